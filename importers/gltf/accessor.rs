@@ -1,0 +1,215 @@
+//! Accessors as random access to vectors of numbers (specification, section 3.6.2): strides, normalized integers,
+//! sparse replacement, and zeros where there are no data.
+
+use ajar_scene::{Diagnostic, Severity};
+use gltf::json::{
+    accessor::{ComponentType, Type},
+    validation::Checked,
+};
+
+use super::{Asset, Context, at, buffers::View};
+
+/// An accessor whose every element lies inside its data.
+pub(super) struct Accessor<'a> {
+    /// Number of elements, at least one.
+    pub count: u32,
+    /// Type of the components.
+    pub kind: ComponentType,
+    normalized: bool,
+    width: usize,
+    dense: Option<Elements<'a>>,
+    /// Elements that are replaced, increasing, and what replaces them.
+    sparse: Option<(Vec<u32>, Elements<'a>)>,
+}
+
+/// Elements at equal distances.
+struct Elements<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+}
+
+impl<'a> Elements<'a> {
+    /// `count` elements of `size` bytes from `offset` on.
+    fn new(view: View<'a>, offset: u64, count: u64, size: usize, element: &str) -> Result<Self, Diagnostic> {
+        let error = |message: String| Err(Diagnostic::error(message).element(element));
+        let stride = view.stride.unwrap_or(size);
+        if stride < size {
+            return error(format!("a stride of {stride} bytes is less than the element's {size}"));
+        }
+        let end =
+            (count - 1).checked_mul(stride as u64).and_then(|last| last.checked_add(offset + size as u64));
+        match (end, usize::try_from(offset).ok().and_then(|offset| view.bytes.get(offset..))) {
+            (Some(end), Some(bytes)) if end <= view.bytes.len() as u64 => Ok(Self { bytes, stride }),
+            _ => error(format!(
+                "{count} elements of {size} bytes at distances of {stride} from {offset} on reach beyond the view of {} \
+                 bytes",
+                view.bytes.len()
+            )),
+        }
+    }
+
+    /// Component `component` of element `index` as `N` bytes; zeros outside, which [`Elements::new`] has excluded.
+    fn component<const N: usize>(&self, index: usize, component: usize) -> [u8; N] {
+        let start = index * self.stride + component * N;
+        self.bytes.get(start..start + N).and_then(|bytes| bytes.try_into().ok()).unwrap_or([0; N])
+    }
+}
+
+impl<'a> Accessor<'a> {
+    /// Checks the layout of `accessors[index]`, to which `user` refers and whose elements must have one of `widths`.
+    ///
+    /// # Errors
+    /// The accessor contradicts itself or reaches beyond its data.
+    pub fn open(
+        asset: &'a Asset,
+        context: &mut Context,
+        index: usize,
+        widths: &[usize],
+        user: &str,
+    ) -> Result<Self, Diagnostic> {
+        let accessor = at(&asset.root.accessors, index, "accessors", user)?;
+        let element = format!("accessors[{index}]");
+        let error =
+            |field: &str, message: String| Diagnostic::error(message).element(format!("{element}{field}"));
+        let Checked::Valid(kind) = accessor.component_type else {
+            return Err(error(".componentType", "unknown component type".into()));
+        };
+        let width = match accessor.type_ {
+            Checked::Valid(Type::Mat2 | Type::Mat3 | Type::Mat4) | Checked::Invalid => 0,
+            Checked::Valid(vector) => vector.multiplicity(),
+        };
+        if !widths.contains(&width) {
+            return Err(error(".type", format!("the type does not suit {user}")));
+        }
+        let count = u32::try_from(accessor.count.0).ok().filter(|&n| n > 0 && n < u32::MAX);
+        let count =
+            count.ok_or_else(|| error(".count", format!("a count of {} is impossible", accessor.count.0)))?;
+        let size = width * kind.0.size();
+        let offset = accessor.byte_offset.unwrap_or_default().0;
+        let dense = match accessor.buffer_view {
+            Some(view) => {
+                let view = asset.buffers.view(&asset.root, view.value(), &element)?;
+                Some(Elements::new(view, bounded(offset, &element)?, u64::from(count), size, &element)?)
+            }
+            None => None,
+        };
+        let opened =
+            Self { count, kind: kind.0, normalized: accessor.normalized, width, dense, sparse: None };
+        opened.with_sparse(asset, context, index)
+    }
+
+    fn with_sparse(
+        mut self,
+        asset: &'a Asset,
+        context: &mut Context,
+        index: usize,
+    ) -> Result<Self, Diagnostic> {
+        let Some(sparse) = asset.root.accessors.get(index).and_then(|accessor| accessor.sparse.as_ref())
+        else {
+            return Ok(self);
+        };
+        let element = format!("accessors[{index}].sparse");
+        let error =
+            |field: &str, message: String| Diagnostic::error(message).element(format!("{element}{field}"));
+        let count = sparse.count.0;
+        if count == 0 || count > u64::from(self.count) {
+            return Err(error(".count", format!("a count of {count} does not suit {} elements", self.count)));
+        }
+        let Checked::Valid(kind) = sparse.indices.component_type else {
+            return Err(error(".indices.componentType", "unknown component type".into()));
+        };
+        let elements = |view: usize, offset: u64, size: usize, field: &str| {
+            let element = format!("{element}{field}");
+            let view = View { stride: None, ..asset.buffers.view(&asset.root, view, &element)? };
+            Elements::new(view, bounded(offset, &element)?, count, size, &element)
+        };
+        let indices = &sparse.indices;
+        let from = elements(indices.buffer_view.value(), indices.byte_offset.0, kind.0.size(), ".indices")?;
+        let values = &sparse.values;
+        let size = self.width * self.kind.size();
+        let values = elements(values.buffer_view.value(), values.byte_offset.0, size, ".values")?;
+        context.charge(count * 4, &element)?;
+        let replaced: Vec<_> = (0..count as usize).map(|i| whole(&from, kind.0, i)).collect();
+        if !replaced.is_sorted_by(|a, b| a < b) || replaced.last().is_some_and(|&last| last >= self.count) {
+            return Err(error(
+                ".indices",
+                "the indices do not increase, or point beyond the accessor".into(),
+            ));
+        }
+        self.sparse = Some((replaced, values));
+        Ok(self)
+    }
+
+    /// Whether nothing gives the elements a value, so that all are zero.
+    pub fn is_all_zeros(&self) -> bool {
+        self.dense.is_none() && self.sparse.is_none()
+    }
+
+    /// Element `index` as real numbers; components beyond its width have the value of `missing`.
+    pub fn get<const N: usize>(&self, index: u32, missing: f32) -> [f32; N] {
+        let Some((elements, index)) = self.locate(index) else { return [0.0; N] };
+        std::array::from_fn(|i| if i < self.width { self.real(elements, index, i) } else { missing })
+    }
+
+    /// Element `index` of an accessor of unsigned scalars.
+    pub fn index(&self, index: u32) -> u32 {
+        self.locate(index).map_or(0, |(elements, index)| whole(elements, self.kind, index))
+    }
+
+    /// Where the element is stored, if it is.
+    fn locate(&self, index: u32) -> Option<(&Elements<'a>, usize)> {
+        if let Some((indices, values)) = &self.sparse
+            && let Ok(at) = indices.binary_search(&index)
+        {
+            return Some((values, at));
+        }
+        self.dense.as_ref().map(|elements| (elements, index as usize))
+    }
+
+    fn real(&self, elements: &Elements, index: usize, component: usize) -> f32 {
+        let (value, one) = match self.kind {
+            ComponentType::F32 => return f32::from_le_bytes(elements.component(index, component)),
+            ComponentType::U32 => return u32::from_le_bytes(elements.component(index, component)) as f32,
+            ComponentType::I8 => (f32::from(i8::from_le_bytes(elements.component(index, component))), 127.0),
+            ComponentType::U8 => (f32::from(u8::from_le_bytes(elements.component(index, component))), 255.0),
+            ComponentType::I16 => {
+                (f32::from(i16::from_le_bytes(elements.component(index, component))), 32767.0)
+            }
+            ComponentType::U16 => {
+                (f32::from(u16::from_le_bytes(elements.component(index, component))), 65535.0)
+            }
+        };
+        if self.normalized { (value / one).max(-1.0) } else { value }
+    }
+}
+
+/// An unsigned scalar.
+fn whole(elements: &Elements, kind: ComponentType, index: usize) -> u32 {
+    match kind {
+        ComponentType::U8 => u32::from(u8::from_le_bytes(elements.component(index, 0))),
+        ComponentType::U16 => u32::from(u16::from_le_bytes(elements.component(index, 0))),
+        _ => u32::from_le_bytes(elements.component(index, 0)),
+    }
+}
+
+/// The offset, if sums with it cannot overflow.
+fn bounded(offset: u64, element: &str) -> Result<u64, Diagnostic> {
+    let error = || Diagnostic::error(format!("an offset of {offset} bytes is impossible")).element(element);
+    u32::try_from(offset >> 16).map(|_| offset).map_err(|_| error())
+}
+
+/// Warns about accessors with an impossible layout that nothing which is read asked for: the others are errors by now.
+pub(super) fn check_unused(asset: &Asset, context: &mut Context) {
+    for index in 0..asset.root.accessors.len() {
+        let matrix = matches!(
+            asset.root.accessors.get(index).map(|accessor| accessor.type_),
+            Some(Checked::Valid(Type::Mat2 | Type::Mat3 | Type::Mat4))
+        );
+        if matrix {
+            continue;
+        }
+        if let Err(error) = Accessor::open(asset, context, index, &[1, 2, 3, 4], "anything") {
+            context.report.add(Diagnostic { severity: Severity::Warning, ..error });
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Images: found and recognized, but left encoded.
+
+use std::{fs::File, io::Read, path::Path};
+
+use ajar_scene::{Diagnostic, Id, Image, ImageSource, Scene, Severity};
+
+use super::{Asset, Context, at, uri};
+
+/// Bytes that tell the format.
+const HEAD: usize = 12;
+
+/// The images asked for so far, by their index in the file; `None` for those that cannot be had.
+#[derive(Default)]
+pub(super) struct Images(std::collections::HashMap<usize, Option<Id<Image>>>);
+
+impl Images {
+    /// The image at `index`, to which `element` refers; `None`, with one warning, if it cannot be had.
+    ///
+    /// # Errors
+    /// The index points beyond the list.
+    pub fn get(
+        &mut self,
+        asset: &Asset,
+        context: &mut Context,
+        scene: &mut Scene,
+        index: usize,
+        element: &str,
+    ) -> Result<Option<Id<Image>>, Diagnostic> {
+        if let Some(known) = self.0.get(&index) {
+            return Ok(*known);
+        }
+        let image = at(&asset.root.images, index, "images", element)?;
+        let own = format!("images[{index}]");
+        let found = match source(asset, context, image, &own) {
+            Ok(source) => {
+                let name = image.name.clone().or_else(|| named_after(&source)).unwrap_or(own);
+                Some(scene.images.push(Image { name, source }))
+            }
+            Err(error) => {
+                let message = format!("textures of this image are dropped: {}", error.message);
+                context.report.add(Diagnostic { severity: Severity::Warning, message, ..error }.element(own));
+                None
+            }
+        };
+        self.0.insert(index, found);
+        Ok(found)
+    }
+}
+
+fn named_after(source: &ImageSource) -> Option<String> {
+    match source {
+        ImageSource::File(path) => path.file_name().map(|name| name.to_string_lossy().into_owned()),
+        ImageSource::Embedded(_) => None,
+    }
+}
+
+fn source(
+    asset: &Asset,
+    context: &mut Context,
+    image: &gltf::json::Image,
+    element: &str,
+) -> Result<ImageSource, Diagnostic> {
+    let embedded = match (&image.uri, image.buffer_view) {
+        (Some(uri), _) => match uri::data(uri, context, element)? {
+            Some(bytes) => bytes,
+            None => {
+                let path = uri::file(uri, context, element)?;
+                recognize(&head(&path)?)?;
+                return Ok(ImageSource::File(path));
+            }
+        },
+        (None, Some(view)) => {
+            let view = asset.buffers.view(&asset.root, view.value(), element)?;
+            context.charge(view.bytes.len() as u64, element)?;
+            view.bytes.to_vec()
+        }
+        (None, None) => return Err(Diagnostic::error("it has neither URI nor buffer view")),
+    };
+    recognize(&embedded)?;
+    Ok(ImageSource::Embedded(embedded.into()))
+}
+
+fn head(path: &Path) -> Result<Vec<u8>, Diagnostic> {
+    let failed = |e: std::io::Error| Diagnostic::error(format!("it cannot be read: {e}"));
+    if !path.metadata().map_err(failed)?.is_file() {
+        return Err(Diagnostic::error("it is not a regular file"));
+    }
+    let mut head = Vec::new();
+    File::open(path).and_then(|file| file.take(HEAD as u64).read_to_end(&mut head)).map_err(failed)?;
+    Ok(head)
+}
+
+/// Refuses what no decoder of ours reads. The bytes decide, not the media type, which is often wrong.
+fn recognize(bytes: &[u8]) -> Result<(), Diagnostic> {
+    const KNOWN: [&[u8]; 6] =
+        [b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"#?", b"\x76\x2f\x31\x01", b"II*\0", b"MM\0*"];
+    let webp = bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP");
+    if webp || KNOWN.iter().any(|magic| bytes.starts_with(magic)) {
+        Ok(())
+    } else if bytes.starts_with(b"\xabKTX ") || bytes.starts_with(b"sB") {
+        Err(Diagnostic::error("KTX2 and Basis images are not supported yet")
+            .hint("convert it to PNG or WebP"))
+    } else {
+        Err(Diagnostic::error("it is of no known image format"))
+    }
+}

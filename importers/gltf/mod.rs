@@ -1,0 +1,134 @@
+//! glTF 2.0, text and binary.
+//!
+//! Source: Khronos Group, *glTF 2.0 Specification* (version 2.0.1, 2021) and the extensions in its repository; the
+//! rows of [`FEATURES`] say which. The `gltf` crate names the JSON; everything that can be wrong in a file is checked
+//! here, since the crate's own reader refuses required extensions it does not know, and its accessors trust the file.
+//!
+//! The way of a file: `container` splits a GLB, `document` turns JSON into the crate's types, `check` proves that
+//! indices point to something and nodes form trees, `buffers` and `accessor` give numbers, and `mesh`, `material`,
+//! `light`, `camera` and `node` make the scene. Meshes are split into one mesh per primitive; nodes keep their
+//! indices.
+
+mod accessor;
+mod attributes;
+mod buffers;
+mod camera;
+mod check;
+mod container;
+mod document;
+mod extensions;
+mod image;
+mod layers;
+mod light;
+mod material;
+mod mesh;
+mod node;
+mod texture;
+mod topology;
+mod uri;
+
+use std::{collections::HashSet, path::PathBuf};
+
+use ajar_scene::{Diagnostic, Feature, ImportRequest, Imported, Importer, Scene};
+use gltf::json::Root;
+
+use crate::report::Report;
+
+pub use extensions::FEATURES;
+
+/// The importer of `.gltf` and `.glb` files.
+pub struct Gltf;
+
+impl Importer for Gltf {
+    fn name(&self) -> &'static str {
+        "gltf"
+    }
+
+    fn extensions(&self) -> &'static [&'static str] {
+        &["gltf", "glb"]
+    }
+
+    fn sniff(&self, head: &[u8]) -> bool {
+        container::looks_like_gltf(head)
+    }
+
+    fn features(&self) -> &'static [Feature] {
+        FEATURES
+    }
+
+    fn import(&self, request: &ImportRequest) -> Result<Imported, Diagnostic> {
+        read(request).map_err(|mut error| {
+            error.file.get_or_insert_with(|| request.path.clone());
+            error
+        })
+    }
+}
+
+/// What every part needs: the limits of the request, and a place for findings.
+struct Context<'a> {
+    request: &'a ImportRequest,
+    report: Report,
+    files: Vec<PathBuf>,
+    budget: u64,
+}
+
+impl Context<'_> {
+    /// Counts `bytes` of memory that the file asks for, before they are allocated.
+    fn charge(&mut self, bytes: u64, element: &str) -> Result<(), Diagnostic> {
+        let limit = self.request.memory_limit;
+        self.budget = self.budget.checked_sub(bytes).ok_or_else(|| {
+            Diagnostic::error(format!("needs more memory than the limit of {limit} bytes"))
+                .element(element)
+                .hint("raise the memory limit of the import if the file is to be trusted")
+        })?;
+        Ok(())
+    }
+}
+
+/// The JSON and the bytes that belong to it.
+struct Asset {
+    root: Root,
+    buffers: buffers::Buffers,
+}
+
+fn read(request: &ImportRequest) -> Result<Imported, Diagnostic> {
+    let mut context = Context {
+        request,
+        report: Report::default(),
+        files: vec![request.path.clone()],
+        budget: request.memory_limit,
+    };
+    let file = uri::read_file(&request.path, &mut context, "the file").map_err(|mut error| {
+        error.element = None;
+        error
+    })?;
+    let (root, binary) = document::parse(file, &mut context.report)?;
+    check::indices(&root)?;
+    let parents = check::parents(&root)?;
+    let buffers = buffers::Buffers::load(&root, binary, &mut context)?;
+    let asset = Asset { root, buffers };
+
+    let mut scene = Scene::default();
+    let materials = material::materials(&asset, &mut context, &mut scene)?;
+    let meshes = mesh::meshes(&asset, &mut context, &mut scene, &materials)?;
+    let lights = light::lights(&asset.root, &mut context, &mut scene);
+    let cameras = camera::cameras(&asset.root, &mut context, &mut scene);
+    node::nodes(&asset.root, &mut context, &mut scene, &node::Parts { meshes, lights, cameras })?;
+    scene.roots = node::roots(&asset.root, &parents, &mut context);
+    if scene.roots.is_empty() {
+        context.report.add(Diagnostic::warning("the scene places no nodes, there is nothing to see"));
+    }
+    accessor::check_unused(&asset, &mut context);
+    asset.buffers.check_unused(&mut context);
+    let mut met = HashSet::new();
+    context.files.retain(|path| met.insert(path.clone()));
+    Ok(Imported { scene, diagnostics: context.report.finish(&request.path), files: context.files })
+}
+
+/// The item at `index`, or an error that names the element which points beyond.
+fn at<'a, T>(items: &'a [T], index: usize, list: &str, element: &str) -> Result<&'a T, Diagnostic> {
+    items.get(index).ok_or_else(|| {
+        Diagnostic::error(format!("points to {list}[{index}], but there are only {}", items.len()))
+            .element(element)
+    })
+}

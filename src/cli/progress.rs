@@ -1,0 +1,88 @@
+//! The line that says how far a render is.
+
+use std::time::{Duration, Instant};
+
+use ajar_integrators::stop::StopRules;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::session::Status;
+
+/// Without a terminal, a plain line this often.
+const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
+
+/// Shows progress on standard error.
+pub(super) struct Progress {
+    bar: Option<ProgressBar>,
+    last: Instant,
+    quiet: bool,
+}
+
+impl Progress {
+    pub(super) fn new(quiet: bool) -> Self {
+        let bar = (!quiet && super::interactive()).then(|| {
+            let bar = ProgressBar::new(1000);
+            if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}") {
+                bar.set_style(style.progress_chars("━╸ "));
+            }
+            bar
+        });
+        Self { bar, last: Instant::now(), quiet }
+    }
+
+    /// Shows the state after a round.
+    pub(super) fn update(&mut self, status: &Status, rules: &StopRules) {
+        let done = fraction(status, rules);
+        let text = describe(status, done);
+        if let Some(bar) = &self.bar {
+            bar.set_position((done * 1000.0) as u64);
+            bar.set_message(text);
+        } else if !self.quiet && self.last.elapsed() >= PLAIN_INTERVAL {
+            self.last = Instant::now();
+            eprintln!("{:3.0} %  {text}", done * 100.0);
+        }
+    }
+
+    pub(super) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// How much of the render is done, by the rule that is nearest to hold.
+fn fraction(status: &Status, rules: &StopRules) -> f64 {
+    let by_rounds = rules.rounds.map_or(0.0, |n| status.rounds as f64 / n.max(1) as f64);
+    let by_time =
+        rules.time.map_or(0.0, |t| status.elapsed.as_secs_f64() / t.as_secs_f64().max(f64::MIN_POSITIVE));
+    // Noise falls with the square root of the work.
+    let by_noise =
+        rules.noise.zip(status.noise).map_or(0.0, |(limit, n)| (limit / n.typical.max(limit)).powi(2));
+    by_rounds.max(by_time).max(by_noise).clamp(0.0, 1.0)
+}
+
+fn describe(status: &Status, done: f64) -> String {
+    let noise = match status.noise {
+        Some(noise) => {
+            format!("noise {:.1} % (worst tile {:.0} %)", noise.typical * 100.0, noise.worst_tile * 100.0)
+        }
+        None => "noise not yet known".into(),
+    };
+    let left = if done > 0.0 && done < 1.0 {
+        let seconds = status.elapsed.as_secs_f64() * (1.0 / done - 1.0);
+        format!(", about {} left", duration(Duration::from_secs_f64(seconds)))
+    } else {
+        String::new()
+    };
+    format!("round {}, {} samples a pixel, {noise}{left}", status.rounds, status.samples)
+}
+
+/// `45 s`, `3 min 20 s`, `2 h 5 min`.
+pub(super) fn duration(time: Duration) -> String {
+    let seconds = time.as_secs();
+    match seconds {
+        0..10 => format!("{:.1} s", time.as_secs_f64()),
+        10..120 => format!("{seconds} s"),
+        120..7200 => format!("{} min {} s", seconds / 60, seconds % 60),
+        _ => format!("{} h {} min", seconds / 3600, seconds / 60 % 60),
+    }
+}

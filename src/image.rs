@@ -1,0 +1,244 @@
+//! A rendered film as files: EXR with its layers, PNG preview, numbers as JSON.
+
+use std::{
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
+
+use ajar_integrators::{
+    Settings,
+    features::{Features, features},
+};
+use ajar_output::{
+    CameraMatrices, Channel, Layer, Metadata, OutputError, Picture, Precision, ToneMap, write_atomically,
+    write_exr, write_png,
+};
+use ajar_render::{World, math::Rgb};
+use ajar_scene::{Camera, Diagnostic};
+use glam::DAffine3;
+
+use crate::session::Rendered;
+
+/// An auxiliary layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aov {
+    /// Reflectance at the first surface.
+    Albedo,
+    /// Shading normal.
+    Normal,
+    /// Geometric normal.
+    GeometricNormal,
+    /// Depth along the optical axis.
+    Depth,
+    /// World position.
+    Position,
+    /// First texture coordinates.
+    Uv,
+    /// Material number.
+    MaterialId,
+    /// Number of the placed mesh.
+    ObjectId,
+    /// Estimated variance of the pixel's mean.
+    Variance,
+}
+
+impl Aov {
+    const ALL: [(&'static str, Self); 9] = [
+        ("albedo", Self::Albedo),
+        ("normal", Self::Normal),
+        ("geometric_normal", Self::GeometricNormal),
+        ("depth", Self::Depth),
+        ("position", Self::Position),
+        ("uv", Self::Uv),
+        ("material_id", Self::MaterialId),
+        ("object_id", Self::ObjectId),
+        ("variance", Self::Variance),
+    ];
+
+    /// The layer of a name as users write it.
+    ///
+    /// # Errors
+    /// Unknown names, with those that exist.
+    pub fn parse(name: &str) -> Result<Self, Diagnostic> {
+        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, aov)| *aov).ok_or_else(|| {
+            let known: Vec<_> = Self::ALL.iter().map(|(name, _)| *name).collect();
+            Diagnostic::error(format!("there is no AOV \"{name}\""))
+                .hint(format!("choose from: {}", known.join(", ")))
+        })
+    }
+}
+
+/// Where results go and in which form.
+#[derive(Clone, Debug)]
+pub struct Destination {
+    /// The image.
+    pub exr: PathBuf,
+    /// The preview.
+    pub png: PathBuf,
+    /// Tone map of the preview.
+    pub tone_map: ToneMap,
+    /// Exposure of the preview, stops.
+    pub exposure: f64,
+    /// Layers besides the beauty.
+    pub aovs: Vec<Aov>,
+    /// Full floats for colours.
+    pub float: bool,
+}
+
+/// A finished render and what it came from.
+pub struct Run<'a> {
+    /// What was rendered.
+    pub world: &'a World,
+    /// Camera and its place.
+    pub camera: &'a (Camera, DAffine3),
+    /// Name of the integrator.
+    pub integrator: &'a str,
+    /// Its settings.
+    pub settings: &'a Settings,
+    /// The film and its state.
+    pub rendered: &'a Rendered,
+    /// Hash of the scene.
+    pub scene_hash: &'a str,
+}
+
+/// Writes EXR and PNG; returns notes for the user.
+///
+/// # Errors
+/// A file cannot be written, or pixels are not finite.
+pub fn write(run: &Run<'_>, to: &Destination) -> Result<Vec<Diagnostic>, OutputError> {
+    let first_hits = features(run.world, run.settings.window);
+    let beauty = beauty(run);
+    let window = run.settings.window;
+    let precision = if to.float { Precision::Float } else { Precision::Half };
+    let mut layers = vec![layer(
+        "",
+        precision,
+        "RGBA",
+        |p, c| match c {
+            3 => first_hits[p].alpha,
+            _ => beauty[p * 3 + c],
+        },
+        window.pixels(),
+    )];
+    layers.extend(to.aovs.iter().map(|aov| aov_layer(*aov, run, &first_hits, precision)));
+    let picture = Picture {
+        width: window.width(),
+        height: window.height(),
+        offset: (window.x0 as i32, window.y0 as i32),
+        full_size: (run.world.camera.width, run.world.camera.height),
+        layers,
+        metadata: metadata(run),
+    };
+    let widened = write_exr(&to.exr, &picture)?;
+    write_png(&to.png, &beauty, None, window.width(), window.height(), to.tone_map, to.exposure as f32)?;
+    let mut notes: Vec<_> = widened
+        .iter()
+        .map(|w| {
+            let layer = if w.layer.is_empty() { "the image" } else { &w.layer };
+            Diagnostic::note(format!("{layer} has values up to {} and was written as full floats", w.peak))
+        })
+        .collect();
+    let rejected = run.rendered.film.rejected();
+    if rejected > 0 {
+        notes
+            .push(Diagnostic::warning(format!("{rejected} contributions were not finite and were left out")));
+    }
+    if beauty.iter().all(|v| *v == 0.0) {
+        notes.push(Diagnostic::warning("the image is black: no light reaches the camera"));
+    }
+    Ok(notes)
+}
+
+/// Interleaved RGB with the camera's exposure.
+fn beauty(run: &Run<'_>) -> Vec<f32> {
+    let exposure = run.world.camera.exposure;
+    (0..run.settings.window.pixels())
+        .flat_map(|p| (run.rendered.film.mean(p) * exposure).as_vec3().to_array())
+        .collect()
+}
+
+/// A layer whose channels are the letters of `names`.
+fn layer(
+    name: &str,
+    precision: Precision,
+    names: &str,
+    value: impl Fn(usize, usize) -> f32,
+    pixels: usize,
+) -> Layer {
+    let channels = names
+        .chars()
+        .enumerate()
+        .map(|(c, name)| Channel { name: name.into(), samples: (0..pixels).map(|p| value(p, c)).collect() })
+        .collect();
+    Layer { name: name.into(), precision, channels }
+}
+
+fn ids(name: &str, value: impl Fn(&Features) -> u32, hits: &[Features]) -> Layer {
+    // Ids are whole numbers in floats: readers scale unsigned integers when they convert them.
+    let samples = hits.iter().map(|hit| value(hit) as f32).collect();
+    let channels = vec![Channel { name: name.into(), samples }];
+    Layer { name: String::new(), precision: Precision::Float, channels }
+}
+
+fn aov_layer(aov: Aov, run: &Run<'_>, hits: &[Features], color: Precision) -> Layer {
+    let full = Precision::Float;
+    let pixels = hits.len();
+    match aov {
+        Aov::Albedo => layer("albedo", color, "RGB", |p, c| hits[p].albedo[c], pixels),
+        Aov::Normal => layer("N", color, "XYZ", |p, c| hits[p].normal[c], pixels),
+        Aov::GeometricNormal => layer("Ng", color, "XYZ", |p, c| hits[p].geometric_normal[c], pixels),
+        Aov::Depth => layer("", full, "Z", |p, _| hits[p].depth, pixels),
+        Aov::Position => layer("P", full, "XYZ", |p, c| hits[p].position[c], pixels),
+        Aov::Uv => layer("uv", full, "UV", |p, c| hits[p].uv[c], pixels),
+        Aov::MaterialId => ids("materialId", |f| f.material, hits),
+        Aov::ObjectId => ids("objectId", |f| f.object, hits),
+        Aov::Variance => {
+            let exposure = run.world.camera.exposure;
+            let variance = |p: usize| {
+                let v = run.rendered.film.variance_of_mean(p) * exposure * exposure;
+                // One round says nothing about its error; the file says it with the largest number.
+                v.min(Rgb::splat(f32::MAX.into())).as_vec3()
+            };
+            layer("variance", full, "RGB", |p, c| variance(p)[c], pixels)
+        }
+    }
+}
+
+fn metadata(run: &Run<'_>) -> Metadata {
+    let (status, camera) = (&run.rendered.status, &run.world.camera);
+    Metadata {
+        camera: Some(CameraMatrices::new(&run.camera.0, &run.camera.1, camera.width, camera.height)),
+        captured: Some(SystemTime::now()),
+        render_seconds: status.elapsed.as_secs_f64(),
+        samples_per_pixel: status.samples.min(u32::MAX.into()) as u32,
+        seed: run.settings.seed,
+        rounds: status.rounds.min(u32::MAX.into()) as u32,
+        integrator: run.integrator.into(),
+        scene_hash: run.scene_hash.into(),
+        noise: status.noise.map(|n| n.typical),
+        complete: run.rendered.reason.is_some(),
+        shard: None,
+    }
+}
+
+/// Writes numbers about the render as JSON.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_stats(run: &Run<'_>, path: &Path) -> Result<(), OutputError> {
+    let status = &run.rendered.status;
+    let text = serde_json::json!({
+        "integrator": run.integrator,
+        "seed": run.settings.seed,
+        "rounds": status.rounds,
+        "samples_per_pixel": status.samples,
+        "seconds": status.elapsed.as_secs_f64(),
+        "noise": status.noise.map(|n| n.typical),
+        "noise_worst_tile": status.noise.map(|n| n.worst_tile),
+        "rejected_contributions": run.rendered.film.rejected(),
+        "scene_hash": run.scene_hash,
+        "complete": run.rendered.reason.is_some(),
+    })
+    .to_string();
+    write_atomically(path, |file| file.write_all(text.as_bytes()))
+}

@@ -1,0 +1,233 @@
+//! Connections c_{s,t} and their weights: every way to join a light subpath and an eye subpath (Veach 1997 §10).
+
+use ajar_render::{
+    World,
+    bsdf::{Mode, Side},
+    math::Rgb,
+    path::{Edge, Kind, Stop, Subpath, Vertex, sweep::Densities},
+};
+use glam::{DVec2, DVec3};
+
+/// Most vertices of a path.
+pub const MAX_VERTICES: usize = 66;
+
+/// An end of a subpath, about to be connected: its vertex is smooth here, however the walk went on from it.
+#[derive(Clone, Copy)]
+struct End {
+    vertex: Vertex,
+    throughput: Rgb,
+    to_previous: DVec3,
+}
+
+impl End {
+    fn of(stop: &Stop) -> Option<Self> {
+        let vertex = Vertex { mode: Mode::Smooth, ..stop.vertex };
+        let scatters = vertex.kind == Kind::Surface && vertex.bsdf.has_smooth();
+        scatters.then_some(Self { vertex, throughput: stop.throughput, to_previous: stop.to_previous })
+    }
+}
+
+/// Arrays of the sweep, kept between connections.
+pub struct Connector<'w> {
+    world: &'w World,
+    light_fraction: f64,
+    to_eye: [f64; MAX_VERTICES],
+    to_light: [f64; MAX_VERTICES],
+    connectable: [bool; MAX_VERTICES],
+}
+
+/// What one technique found.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Contribution {
+    /// f/p of this technique alone, for a film of total measure 1.
+    pub value: Rgb,
+    /// Its share by the balance heuristic.
+    pub weight: f64,
+}
+
+impl Contribution {
+    const NONE: Self = Self { value: Rgb::ZERO, weight: 0.0 };
+
+    /// What it adds to the image.
+    pub fn weighted(&self) -> Rgb {
+        self.value * self.weight
+    }
+}
+
+/// A contribution of technique t = 1, which chooses its own place on the film.
+#[derive(Clone, Copy, Debug)]
+pub struct Splat {
+    /// Raster position, pixels.
+    pub raster: DVec2,
+    /// What arrives there.
+    pub found: Contribution,
+}
+
+impl<'w> Connector<'w> {
+    /// `light_fraction`: light paths per eye path over the whole film.
+    pub fn new(world: &'w World, light_fraction: f64) -> Self {
+        Self {
+            world,
+            light_fraction,
+            to_eye: [0.0; MAX_VERTICES],
+            to_light: [0.0; MAX_VERTICES],
+            connectable: [false; MAX_VERTICES],
+        }
+    }
+
+    /// Technique s = 0: the eye subpath's `t`-th vertex is an emitter.
+    pub fn hit(&mut self, eye: &Subpath, t: usize) -> Contribution {
+        let stop = &eye.stops[t - 1];
+        let x0 = Vertex { mode: Mode::Smooth, ..stop.vertex };
+        if x0.emitter == Vertex::NO_EMITTER {
+            return Contribution::NONE;
+        }
+        let value = stop.throughput * self.world.emitted(&x0, stop.to_previous);
+        if value == Rgb::ZERO || t == 2 {
+            return Contribution { value, weight: 1.0 };
+        }
+        let x1 = &eye.stops[t - 2].vertex;
+        let Some(edge) = Edge::between(&x0, x1, self.world.shortest_edge) else { return Contribution::NONE };
+        self.fill_eye(eye, t, 0);
+        self.connectable[0] = true;
+        self.to_light[1] = stop.arrival_as_end * x1.survival(t - 2);
+        self.to_eye[0] = self.emission_density(&x0, x1, &edge);
+        Contribution { value, weight: self.weight(&x0, 0, t) }
+    }
+
+    /// Technique s = 1: `x0`, a light end sampled with density `density`, seen from the eye subpath's `t`-th vertex.
+    pub fn next_event(&mut self, x0: &Vertex, density: f64, eye: &Subpath, t: usize) -> Contribution {
+        let Some(end) = End::of(&eye.stops[t - 1]) else { return Contribution::NONE };
+        let Some(edge) = Edge::between(x0, &end.vertex, self.world.shortest_edge) else {
+            return Contribution::NONE;
+        };
+        let emitted = self.world.emitted(x0, edge.to_eye) * (self.world.coverage(x0) / density);
+        let value = emitted * self.eye_factor(&end, x0, &edge);
+        let value = self.visible(value, x0, &end.vertex, &edge);
+        if value == Rgb::ZERO {
+            return Contribution::NONE;
+        }
+        self.fill_eye(eye, t, 1);
+        self.connectable[0] = true;
+        self.to_eye[0] = self.emission_density(x0, &end.vertex, &edge);
+        self.join_eye(eye, &end, x0, &edge, t, 1);
+        Contribution { value, weight: self.weight(x0, 1, t) }
+    }
+
+    /// Technique s ≥ 2, t ≥ 2.
+    pub fn connect(&mut self, light: &Subpath, s: usize, eye: &Subpath, t: usize) -> Contribution {
+        let (Some(l), Some(e)) = (End::of(&light.stops[s - 1]), End::of(&eye.stops[t - 1])) else {
+            return Contribution::NONE;
+        };
+        let Some(edge) = Edge::between(&l.vertex, &e.vertex, self.world.shortest_edge) else {
+            return Contribution::NONE;
+        };
+        let value = l.vertex.factor(l.to_previous, edge.to_eye) * l.throughput;
+        let value = value * self.eye_factor(&e, &l.vertex, &edge);
+        let value = self.visible(value, &l.vertex, &e.vertex, &edge);
+        if value == Rgb::ZERO {
+            return Contribution::NONE;
+        }
+        self.fill_light(light, s, t);
+        self.fill_eye(eye, t, s);
+        self.join_light(light, &l, &e.vertex, &edge, s, t);
+        self.join_eye(eye, &e, &l.vertex, &edge, t, s);
+        Contribution { value, weight: self.weight(&light.stops[0].vertex, s, t) }
+    }
+
+    /// Technique t = 1: the light subpath's `s`-th vertex, s ≥ 2, seen through the lens point `lens`.
+    pub fn splat(&mut self, light: &Subpath, s: usize, lens: [f64; 2]) -> Option<Splat> {
+        let end = End::of(&light.stops[s - 1])?;
+        let seen = self.world.camera.connect(end.vertex.p, lens)?;
+        let lens = self.world.lens_vertex(seen.lens);
+        let edge = Edge { to_eye: seen.direction, length: seen.distance, falloff: 1.0 };
+        let factor = end.vertex.factor(end.to_previous, seen.direction);
+        let value = end.throughput * factor * (end.vertex.projected(seen.direction) * seen.importance);
+        let value = self.visible(value, &end.vertex, &lens, &edge);
+        if value == Rgb::ZERO {
+            return None;
+        }
+        let k = s;
+        self.fill_light(light, s, 1);
+        self.connectable[k] = true;
+        self.to_light[k] = seen.importance * end.vertex.projected(seen.direction);
+        self.join_light(light, &end, &lens, &edge, s, 1);
+        let weight = self.weight(&light.stops[0].vertex, s, 1);
+        Some(Splat { raster: seen.raster, found: Contribution { value, weight } })
+    }
+
+    /// `value` times what of it crosses the edge; no ray is cast for nothing.
+    fn visible(&self, value: Rgb, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
+        if value == Rgb::ZERO { value } else { value * self.world.transmittance(light, eye, edge) }
+    }
+
+    /// Throughput, scattering and geometry of the eye side of a connection.
+    fn eye_factor(&self, end: &End, light: &Vertex, edge: &Edge) -> Rgb {
+        let geometry = light.projected(edge.to_eye) * end.vertex.projected(edge.to_eye) * edge.falloff;
+        end.vertex.factor(-edge.to_eye, end.to_previous) * end.throughput * geometry
+    }
+
+    fn emission_density(&self, x0: &Vertex, x1: &Vertex, edge: &Edge) -> f64 {
+        let native = self.world.lights.emit_density(x0, edge.to_eye);
+        edge.density(native, x0, x1, x0.direction_is_fixed())
+    }
+
+    /// Steps of the eye subpath that do not depend on the connection: the path's last `t` vertices after `s` others.
+    fn fill_eye(&mut self, eye: &Subpath, t: usize, s: usize) {
+        let k = s + t - 1;
+        for j in 0..t.saturating_sub(1) {
+            let (i, stop) = (k - j, &eye.stops[j]);
+            self.connectable[i] = stop.vertex.connectable();
+            self.to_eye[i] = stop.back * stop.vertex.survival(i);
+            self.to_light[i] = eye.stops[j + 1].arrival * stop.vertex.survival(j);
+        }
+    }
+
+    /// The same for the path's first `s` vertices, before `t` others.
+    fn fill_light(&mut self, light: &Subpath, s: usize, t: usize) {
+        let k = s + t - 1;
+        for i in 0..s - 1 {
+            let stop = &light.stops[i];
+            self.connectable[i] = stop.vertex.connectable();
+            self.to_light[i] = stop.back * stop.vertex.survival(k - i);
+            self.to_eye[i] = light.stops[i + 1].arrival * stop.vertex.survival(i);
+        }
+    }
+
+    /// Steps around the eye end, whose light-side neighbour is `light`.
+    fn join_eye(&mut self, eye: &Subpath, end: &End, light: &Vertex, edge: &Edge, t: usize, s: usize) {
+        let (x, previous) = (&end.vertex, &eye.stops[t - 2].vertex);
+        self.connectable[s] = true;
+        self.to_light[s + 1] = eye.stops[t - 1].arrival_as_end * previous.survival(t - 2);
+        let toward_light = x.pdf(Side::TowardLight, end.to_previous, -edge.to_eye) * x.survival(t - 1);
+        self.to_light[s] = edge.density(toward_light, x, light, false);
+        let Some(back) = Edge::between(x, previous, 0.0) else { return };
+        let toward_eye = x.pdf(Side::TowardEye, -edge.to_eye, end.to_previous) * x.survival(s);
+        self.to_eye[s] = back.density(toward_eye, x, previous, false);
+    }
+
+    /// Steps around the light end, whose eye-side neighbour is `eye`.
+    fn join_light(&mut self, light: &Subpath, end: &End, eye: &Vertex, edge: &Edge, s: usize, t: usize) {
+        let (x, previous) = (&end.vertex, &light.stops[s - 2].vertex);
+        self.connectable[s - 1] = true;
+        self.to_eye[s - 2] = light.stops[s - 1].arrival_as_end * previous.survival(s - 2);
+        let toward_eye = x.pdf(Side::TowardEye, end.to_previous, edge.to_eye) * x.survival(s - 1);
+        self.to_eye[s - 1] = edge.density(toward_eye, x, eye, false);
+        let Some(back) = Edge::between(previous, x, 0.0) else { return };
+        let toward_light = x.pdf(Side::TowardLight, edge.to_eye, end.to_previous) * x.survival(t);
+        self.to_light[s - 1] = back.density(toward_light, x, previous, false);
+    }
+
+    fn weight(&self, x0: &Vertex, s: usize, t: usize) -> f64 {
+        let k = s + t - 1;
+        Densities {
+            to_eye: &self.to_eye[..=k],
+            to_light: &self.to_light[..=k],
+            connectable: &self.connectable[..=k],
+            light: self.world.lights.density(x0),
+            light_can_be_hit: x0.can_be_met(),
+            light_fraction: self.light_fraction,
+        }
+        .balance_weight(s)
+    }
+}

@@ -1,0 +1,100 @@
+//! The contract of integrators and their list.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ajar_render::{World, film::RoundFilm};
+
+use crate::{bdpt::Bdpt, path::PathTracer};
+
+/// Everything an image depends on besides the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Seed of all randomness.
+    pub seed: u64,
+    /// Edges of the longest path.
+    pub max_depth: usize,
+    /// Eye samples a pixel in one round.
+    pub samples_per_round: u32,
+    /// Pixels to render.
+    pub window: Window,
+}
+
+/// A rectangle of pixels, the end excluded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// First column.
+    pub x0: u32,
+    /// First row.
+    pub y0: u32,
+    /// Column after the last.
+    pub x1: u32,
+    /// Row after the last.
+    pub y1: u32,
+}
+
+impl Window {
+    /// Columns.
+    pub fn width(&self) -> u32 {
+        self.x1 - self.x0
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.y1 - self.y0
+    }
+
+    /// Number of pixels.
+    pub fn pixels(&self) -> usize {
+        self.width() as usize * self.height() as usize
+    }
+
+    /// Index of pixel (x, y) of the full frame in a film of this window.
+    pub fn index(&self, x: u32, y: u32) -> Option<usize> {
+        let inside = (self.x0..self.x1).contains(&x) && (self.y0..self.y1).contains(&y);
+        inside.then(|| (y - self.y0) as usize * self.width() as usize + (x - self.x0) as usize)
+    }
+}
+
+/// What a round reads.
+#[derive(Clone, Copy, Debug)]
+pub struct Context<'a> {
+    /// The prepared scene.
+    pub world: &'a World,
+    /// The settings.
+    pub settings: &'a Settings,
+    /// Set by others to stop early: the round in progress is then worthless.
+    pub cancel: &'a AtomicBool,
+}
+
+impl Context<'_> {
+    /// Whether the round should end at once.
+    pub fn cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+}
+
+/// A way to render.
+pub trait Integrator: Sync {
+    /// Short name for settings.
+    fn name(&self) -> &'static str;
+
+    /// One sentence for people who choose.
+    fn description(&self) -> &'static str;
+
+    /// Longest path that it can build, in edges.
+    fn max_depth(&self) -> usize;
+
+    /// Adds one round to an empty film of the window. The round's pixel values are the deposits times
+    /// [`Integrator::scale`]. If the context was cancelled meanwhile the film is worthless.
+    fn render_round(&self, cx: &Context<'_>, round: u32, film: &RoundFilm);
+
+    /// What one deposit counts in the round's pixel value.
+    fn scale(&self, settings: &Settings) -> f64 {
+        1.0 / f64::from(settings.samples_per_round)
+    }
+}
+
+/// All integrators.
+pub fn integrators() -> &'static [&'static dyn Integrator] {
+    &[&PathTracer, &Bdpt]
+}

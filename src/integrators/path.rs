@@ -1,0 +1,158 @@
+//! Path tracing with next-event estimation (Kajiya 1986; multiple importance sampling: Veach & Guibas 1995).
+
+use ajar_render::{
+    World,
+    bsdf::{Mode, Side},
+    film::RoundFilm,
+    math::Rgb,
+    path::{Edge, Step, Vertex},
+    sampler::Sobol,
+};
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use crate::{Context, Integrator};
+
+/// The path tracer: one light sample and one continuation a vertex, weighed by the balance heuristic.
+#[derive(Clone, Copy, Debug)]
+pub struct PathTracer;
+
+impl Integrator for PathTracer {
+    fn name(&self) -> &'static str {
+        "path"
+    }
+
+    fn description(&self) -> &'static str {
+        "path tracing with next-event estimation: best where light reaches most of the scene directly"
+    }
+
+    fn max_depth(&self) -> usize {
+        4096
+    }
+
+    fn render_round(&self, cx: &Context<'_>, round: u32, film: &RoundFilm) {
+        let window = cx.settings.window;
+        (window.y0..window.y1).into_par_iter().for_each(|y| {
+            if cx.cancelled() {
+                return;
+            }
+            for x in window.x0..window.x1 {
+                let pixel = u64::from(y) * u64::from(cx.world.camera.width) + u64::from(x);
+                let mut sum = Rgb::ZERO;
+                for sample in 0..cx.settings.samples_per_round {
+                    let mut sampler = Sobol::new(cx.settings.seed, round, pixel, sample);
+                    let [dx, dy] = sampler.next_2d();
+                    let raster = DVec2::new(f64::from(x) + dx, f64::from(y) + dy);
+                    sum += radiance(cx.world, cx.settings.max_depth, raster, &mut sampler);
+                }
+                if let Some(index) = window.index(x, y) {
+                    film.add(index, sum);
+                }
+            }
+        });
+    }
+}
+
+/// State of a walk from the eye that is about to leave `from`.
+struct Walk {
+    from: Vertex,
+    origin: DVec3,
+    direction: DVec3,
+    throughput: Rgb,
+    /// Native density of the direction, roulette included.
+    density: f64,
+    /// Whether next-event estimation at `from` competes with meeting a light by chance.
+    competes: bool,
+}
+
+/// Estimates the radiance that reaches `raster` over paths of at most `max_depth` edges.
+pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut Sobol) -> Rgb {
+    let lens = sampler.next_2d();
+    let ray = world.camera.ray(raster, lens);
+    let mut walk = Walk {
+        from: world.lens_vertex(ray.origin),
+        origin: ray.origin,
+        direction: ray.direction,
+        throughput: Rgb::ONE,
+        density: world.camera.direction_density(ray.direction),
+        competes: false,
+    };
+    let mut sum = Rgb::ZERO;
+    for edges in 1..=max_depth {
+        let seed = if world.has_alpha() { (sampler.next_1d() * 4_294_967_296.0) as u32 } else { 0 };
+        let Some(here) = world.trace(walk.origin, walk.direction, edges == 1, seed) else {
+            if let Some(sky) = world.lights.surroundings(walk.direction) {
+                sum += walk.throughput * met_light(world, &sky, &walk);
+            }
+            break;
+        };
+        let Some(edge) = Edge::between(&here, &walk.from, world.shortest_edge) else { break };
+        walk.throughput *= world.absorption(&here, &walk.from, &edge);
+        if here.emitter != Vertex::NO_EMITTER {
+            sum += walk.throughput * met_light(world, &here, &walk);
+        }
+        if edges == max_depth {
+            break;
+        }
+        let w_e = -walk.direction;
+        let survival = here.survival(edges);
+        let next_event = (sampler.next_1d(), sampler.next_2d());
+        if here.bsdf.has_smooth() {
+            sum += walk.throughput * next_event_estimate(world, &here, w_e, survival, next_event);
+        }
+        let (u_lobe, u) = (sampler.next_1d(), sampler.next_2d());
+        let Some(step) = here.scatter(Side::TowardLight, w_e, u_lobe, u) else { break };
+        if survival < 1.0 && sampler.next_1d() >= survival {
+            break;
+        }
+        walk.go_on(here, &step, survival);
+    }
+    sum
+}
+
+impl Walk {
+    fn go_on(&mut self, mut from: Vertex, step: &Step, survival: f64) {
+        from.mode = step.mode;
+        self.origin = from.leave(step.direction);
+        self.direction = step.direction;
+        self.throughput *= step.weight / survival;
+        self.density = step.density * survival;
+        self.competes = step.mode == Mode::Smooth;
+        self.from = from;
+    }
+}
+
+/// Radiance of a light that the walk met by chance, weighed against next-event estimation.
+fn met_light(world: &World, x0: &Vertex, walk: &Walk) -> Rgb {
+    let radiance = world.emitted(x0, -walk.direction);
+    if !walk.competes || radiance == Rgb::ZERO {
+        return radiance;
+    }
+    let Some(edge) = Edge::between(x0, &walk.from, world.shortest_edge) else { return Rgb::ZERO };
+    let met = edge.density(walk.density, &walk.from, x0, false);
+    radiance * (met / (met + world.lights.density(x0)))
+}
+
+/// One light sample for `here`, weighed against meeting the same light by chance.
+fn next_event_estimate(
+    world: &World,
+    here: &Vertex,
+    w_e: DVec3,
+    survival: f64,
+    (choice, u): (f64, [f64; 2]),
+) -> Rgb {
+    let Some((x0, density)) = world.lights.sample(choice, u) else { return Rgb::ZERO };
+    let Some(edge) = Edge::between(&x0, here, world.shortest_edge) else { return Rgb::ZERO };
+    let geometry = x0.projected(edge.to_eye) * here.projected(edge.to_eye) * edge.falloff;
+    let value = here.factor(-edge.to_eye, w_e) * world.emitted(&x0, edge.to_eye) * (geometry / density);
+    if value == Rgb::ZERO {
+        return value;
+    }
+    let value = value * world.transmittance(&x0, here, &edge);
+    if value == Rgb::ZERO || !x0.can_be_met() {
+        return value * world.coverage(&x0);
+    }
+    let native = here.pdf(Side::TowardLight, w_e, -edge.to_eye) * survival;
+    let met = edge.density(native, here, &x0, false);
+    value * (world.coverage(&x0) * density / (density + met))
+}

@@ -1,0 +1,115 @@
+//! Error of an image, estimated from the spread of its rounds (mlt.md §7; Veach & Guibas 1997 §3.4).
+
+use ajar_render::{film::Film, math::scalar};
+
+use crate::Window;
+
+/// Fewest rounds from which noise is estimated.
+pub const MIN_ROUNDS: u64 = 8;
+/// Side of the tiles whose worst is reported, pixels.
+const TILE: usize = 64;
+
+/// Relative standard errors, 0.02 for 2 %.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Of the median pixel.
+    pub typical: f64,
+    /// Of the typical pixel in the worst 64-pixel tile.
+    pub worst_tile: f64,
+}
+
+/// Estimates the noise of a film of `window`; `None` before [`MIN_ROUNDS`] or while the film is black.
+///
+/// A pixel's relative variance is its variance of the mean over `mean² + (1 % of the image's mean)²`, both averaged over
+/// 3 × 3 pixels since single variances are themselves noisy.
+pub fn noise(film: &Film, window: Window) -> Option<Noise> {
+    if film.rounds() < MIN_ROUNDS {
+        return None;
+    }
+    let (width, height) = (window.width() as usize, window.height() as usize);
+    let means: Vec<f64> = (0..film.pixels()).map(|p| scalar(film.mean(p))).collect();
+    let variances: Vec<f64> = (0..film.pixels()).map(|p| scalar(film.variance_of_mean(p))).collect();
+    let image_mean = means.iter().sum::<f64>() / means.len() as f64;
+    if image_mean <= 0.0 {
+        return None;
+    }
+    let floor = (0.01 * image_mean).powi(2);
+    let (variances, squares) = (smooth(&variances, width, height), {
+        let squares: Vec<f64> = means.iter().map(|m| m * m).collect();
+        smooth(&squares, width, height)
+    });
+    let relative: Vec<f64> = variances.iter().zip(&squares).map(|(v, s)| v / (s + floor)).collect();
+    let worst = tiles(&relative, width).into_iter().map(median).fold(0.0, f64::max);
+    Some(Noise { typical: median(relative).sqrt(), worst_tile: worst.sqrt() })
+}
+
+/// Mean over each pixel's 3 × 3 neighbourhood inside the image.
+fn smooth(values: &[f64], width: usize, height: usize) -> Vec<f64> {
+    let span = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
+    (0..values.len())
+        .map(|i| {
+            let (columns, rows) = (span(i % width, width), span(i / width, height));
+            let count = columns.len() * rows.len();
+            let sum: f64 = rows.flat_map(|y| &values[y * width + columns.start..y * width + columns.end]).sum();
+            sum / count as f64
+        })
+        .collect()
+}
+
+fn tiles(values: &[f64], width: usize) -> Vec<Vec<f64>> {
+    let columns = width.div_ceil(TILE);
+    let rows = (values.len() / width).div_ceil(TILE);
+    let mut tiles = vec![Vec::new(); columns * rows];
+    for (i, &value) in values.iter().enumerate() {
+        tiles[i / width / TILE * columns + i % width / TILE].push(value);
+    }
+    tiles
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ajar_render::{
+        math::Rgb,
+        rng::{Purpose, Rng},
+    };
+
+    const WINDOW: Window = Window { x0: 0, y0: 0, x1: 130, y1: 70 };
+
+    fn film(rounds: u32, sigma: impl Fn(usize) -> f64) -> Film {
+        let mut film = Film::new(WINDOW.pixels(), 1.0);
+        for round in 0..rounds {
+            let deposits = film.round();
+            let mut rng = Rng::new(1, Purpose::Test, round, 0);
+            for pixel in 0..WINDOW.pixels() {
+                // Uniform of mean 2 and standard deviation sigma.
+                let value = 2.0 + sigma(pixel) * (rng.f64() - 0.5) * 12f64.sqrt();
+                deposits.add(pixel, Rgb::splat(value));
+            }
+            film.merge(&deposits, 1.0);
+        }
+        film
+    }
+
+    #[test]
+    fn noise_is_the_relative_standard_error() {
+        let found = noise(&film(64, |_| 0.4), WINDOW).expect("enough rounds");
+        assert!((found.typical / (0.4 / 2.0 / 8.0) - 1.0).abs() < 0.05, "{found:?}");
+    }
+
+    #[test]
+    fn the_worst_tile_shows() {
+        let found = noise(&film(64, |p| if p % 130 >= 64 { 1.0 } else { 0.1 }), WINDOW).expect("enough rounds");
+        assert!(found.worst_tile / (1.0 / 2.0 / 8.0) > 0.9, "{found:?}");
+    }
+
+    #[test]
+    fn too_few_rounds_say_nothing() {
+        assert_eq!(noise(&film(7, |_| 0.1), WINDOW), None);
+    }
+}

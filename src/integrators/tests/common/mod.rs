@@ -1,0 +1,103 @@
+//! Small scenes built in code, and statistics to compare images.
+#![allow(dead_code, clippy::unwrap_used, reason = "shared by several tests; a failing test panics")]
+
+pub mod compare;
+pub mod shapes;
+
+use ajar_integrators::{Context, Integrator, Settings, Window, brightness};
+use ajar_render::{World, film::Film, world::{PrepareOptions, prepare}};
+use ajar_scene::{Camera, Id, Input, Light, LightKind, Material, Mesh, Node, Projection, Scene};
+use glam::{DAffine3, DMat3, DVec3, Vec3};
+use std::sync::atomic::AtomicBool;
+
+/// Adds meshes, lights and the camera to a scene.
+#[derive(Default)]
+pub struct Builder {
+    pub scene: Scene,
+    camera: Option<(Id<Camera>, DAffine3)>,
+}
+
+impl Builder {
+    pub fn material(&mut self, material: Material) -> Id<Material> {
+        self.scene.materials.push(material)
+    }
+
+    pub fn diffuse(&mut self, color: Vec3) -> Id<Material> {
+        self.material(diffuse(color))
+    }
+
+    pub fn emitter(&mut self, radiance: Vec3) -> Id<Material> {
+        self.material(Material {
+            emission: Input::constant(radiance),
+            double_sided: false,
+            ..diffuse(Vec3::ZERO)
+        })
+    }
+
+    pub fn mesh(&mut self, mut mesh: Mesh, material: Id<Material>) -> &mut Self {
+        mesh.material = Some(material);
+        let mesh = self.scene.meshes.push(mesh);
+        self.node(Node { meshes: vec![mesh], ..Node::default() })
+    }
+
+    pub fn node(&mut self, node: Node) -> &mut Self {
+        let node = self.scene.nodes.push(node);
+        self.scene.roots.push(node);
+        self
+    }
+
+    /// A light at `position` that shines towards `target`.
+    pub fn light(&mut self, kind: LightKind, position: DVec3, target: DVec3) -> &mut Self {
+        let light = self.scene.lights.push(Light { name: String::new(), color: Vec3::ONE, kind });
+        let transform = look(position, target);
+        self.node(Node { light: Some(light), transform, ..Node::default() })
+    }
+
+    pub fn camera(&mut self, projection: Projection, position: DVec3, target: DVec3) -> &mut Self {
+        let camera =
+            Camera { name: String::new(), projection, aspect: None, exposure: 1.0 };
+        self.camera = Some((self.scene.cameras.push(camera), look(position, target)));
+        self
+    }
+
+    pub fn world(self, size: u32) -> World {
+        let problems = self.scene.validate();
+        assert!(problems.is_empty(), "{problems:?}");
+        let camera = self.camera.unwrap();
+        let options = PrepareOptions { camera, size: [size, size], texture_memory: 1 << 28 };
+        prepare(self.scene, &options).unwrap().0
+    }
+}
+
+pub fn diffuse(color: Vec3) -> Material {
+    Material { base_color: Input::constant(color), specular: Input::constant(0.0), ..Material::default() }
+}
+
+pub fn pinhole(yfov: f32) -> Projection {
+    Projection::Perspective { yfov, lens_radius: 0.0, focus_distance: 1.0, shift: [0.0; 2] }
+}
+
+fn look(position: DVec3, target: DVec3) -> DAffine3 {
+    let up = if (target - position).normalize().y.abs() > 0.99 { DVec3::X } else { DVec3::Y };
+    let z = (position - target).normalize();
+    let x = up.cross(z).normalize();
+    DAffine3::from_mat3_translation(DMat3::from_cols(x, z.cross(x), z), position)
+}
+
+pub fn settings(world: &World, seed: u64, max_depth: usize, samples_per_round: u32) -> Settings {
+    let window = Window { x0: 0, y0: 0, x1: world.camera.width, y1: world.camera.height };
+    Settings { seed, max_depth, samples_per_round, window }
+}
+
+/// Renders `rounds` rounds.
+pub fn render(world: &World, integrator: &dyn Integrator, settings: &Settings, rounds: u32) -> Film {
+    let cancel = AtomicBool::new(false);
+    let mut film = Film::new(settings.window.pixels(), brightness(world, settings.max_depth));
+    for round in 0..rounds {
+        let deposits = film.round();
+        integrator.render_round(&Context { world, settings, cancel: &cancel }, round, &deposits);
+        film.merge(&deposits, integrator.scale(settings));
+    }
+    assert_eq!(film.rejected(), 0);
+    film
+}

@@ -1,0 +1,6 @@
+//! The program: from the command line to files. The rooms below it are libraries: `ajar-scene`, `ajar-importers`,
+//! `ajar-render`, `ajar-integrators`, `ajar-output`.
+
+pub mod cli;
+pub mod image;
+pub mod session;

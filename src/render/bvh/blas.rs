@@ -1,0 +1,251 @@
+//! A set of triangles with its tree.
+
+use glam::{DVec3, Vec3, Vec3A};
+use obvhs::aabb::Aabb;
+use rayon::prelude::*;
+
+use super::build::{self, Leaves};
+use super::tree::{self, PADDING, Slabs, Tree};
+use super::triangle::{LANES, Packet, Shear};
+
+/// Prices measured on furnished rooms.
+const LEAVES: Leaves = Leaves { capacity: 4, packet: LANES, price: 1.0 };
+
+/// Triangles around `center`, to which all f32 positions are relative.
+#[derive(Debug)]
+pub(super) struct Blas {
+    center: DVec3,
+    /// Bounds of the boxes around `center`.
+    low: DVec3,
+    high: DVec3,
+    tree: Tree,
+    packets: Vec<Packet>,
+    /// In which lane of which packet each given triangle is.
+    slots: Vec<u32>,
+}
+
+/// A ray of a set of triangles: relative to its centre and starting no further away than its bounds.
+pub(super) struct LocalRay {
+    slabs: Slabs,
+    shear: Shear,
+    /// Distance already gone from the true origin.
+    pub(super) start: f64,
+    origin: DVec3,
+    direction: DVec3,
+}
+
+/// A hit as found in f32. `t` counts from the start of the local ray.
+#[derive(Clone, Copy)]
+pub(super) struct Candidate {
+    pub(super) slot: u32,
+    pub(super) id: [u32; 2],
+    pub(super) t: f32,
+    pub(super) u: f32,
+    pub(super) v: f32,
+}
+
+/// Distances along a ray and weights of the second and third vertex, in f64.
+pub(super) struct Refined {
+    pub(super) t: f64,
+    pub(super) u: f64,
+    pub(super) v: f64,
+}
+
+impl Blas {
+    /// `triangles` are relative to `center`; `ids` name them.
+    pub(super) fn build(center: DVec3, triangles: &[[Vec3; 3]], ids: &[[u32; 2]]) -> Self {
+        let (sound, unsound): (Vec<u32>, Vec<u32>) =
+            (0..triangles.len() as u32).into_par_iter().partition(|&i| is_sound(&triangles[i as usize]));
+        let boxes: Vec<Aabb> = sound.par_iter().map(|&i| padded_box(&triangles[i as usize])).collect();
+        let mut packer = Packer { triangles, ids, packets: Vec::new(), slots: vec![0; ids.len()] };
+        let mut members = Vec::new();
+        let tree = build::build(&boxes, LEAVES, |prims| {
+            members.clear();
+            members.extend(prims.iter().map(|&p| sound[p as usize]));
+            packer.pack(&members)
+        });
+        // No leaf refers to these, but their vertices can be asked for.
+        for lost in unsound.chunks(LANES) {
+            packer.pack(lost);
+        }
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for b in &boxes {
+            low = low.min(b.min.as_dvec3());
+            high = high.max(b.max.as_dvec3());
+        }
+        let Packer { packets, slots, .. } = packer;
+        Self { center, low, high, tree, packets, slots }
+    }
+
+    /// Corners of the bounds of the boxes; low above high if there are none.
+    pub(super) fn bounds(&self) -> (DVec3, DVec3) {
+        (self.center + self.low, self.center + self.high)
+    }
+
+    /// The largest coordinate, which f32 rounding is relative to.
+    pub(super) fn reach(&self) -> DVec3 {
+        self.low.abs().max(self.high.abs())
+    }
+
+    pub(super) fn memory(&self) -> usize {
+        size_of_val(&self.tree.nodes[..]) + size_of_val(&self.packets[..]) + size_of_val(&self.slots[..])
+    }
+
+    #[cfg(test)]
+    pub(super) fn has_same_tree(&self, other: &Self) -> bool {
+        self.tree == other.tree && self.slots == other.slots
+    }
+
+    /// Vertices of the triangle that was given as number `index`.
+    pub(super) fn vertices(&self, index: u32) -> [DVec3; 3] {
+        self.slot_vertices(self.slots[index as usize]).map(|p| self.center + p)
+    }
+
+    /// What positions are relative to; none if there is no triangle.
+    pub(super) fn center(&self) -> Option<DVec3> {
+        (!self.tree.nodes.is_empty()).then_some(self.center)
+    }
+
+    fn slot_vertices(&self, slot: u32) -> [DVec3; 3] {
+        let slot = slot as usize;
+        self.packets[slot / LANES].get(slot % LANES).map(|p| Vec3::from_array(p).as_dvec3())
+    }
+
+    /// The ray as this set sees it; none if it misses the bounds before `t_max`.
+    #[inline]
+    pub(super) fn local_ray(&self, origin: DVec3, direction: DVec3, t_max: f64) -> Option<LocalRay> {
+        let origin = origin - self.center;
+        let start = enter(origin, direction, self.low, self.high, t_max)?;
+        let moved = (origin + direction * start).as_vec3().to_array();
+        let along = direction.as_vec3().to_array();
+        Some(LocalRay {
+            slabs: Slabs::new(moved, along),
+            shear: Shear::new(moved, along),
+            start,
+            origin,
+            direction,
+        })
+    }
+
+    /// Candidates no farther than `limit` for which `accept` holds, until there is no nearer one; with `any`, the first.
+    #[inline(always)]
+    pub(super) fn closest(
+        &self,
+        ray: &LocalRay,
+        limit: f32,
+        any: bool,
+        accept: impl Fn(&Candidate) -> bool,
+    ) -> Option<Candidate> {
+        let mut best: Option<Candidate> = None;
+        // Finite, so that a distance that overflows is none.
+        self.tree.walk(&ray.slabs, limit.min(f32::MAX), |first, count, mut limit| {
+            for index in first..first + count {
+                let packet = &self.packets[index as usize];
+                let Some(hit) = packet.intersect(&ray.shear, limit) else { continue };
+                let mut set = hit.set;
+                while set != 0 {
+                    let lane = set.trailing_zeros() as usize % LANES;
+                    set &= set - 1;
+                    let slot = index * LANES as u32 + lane as u32;
+                    let id = packet.id(lane);
+                    let found = Candidate { slot, id, t: hit.t[lane], u: hit.u[lane], v: hit.v[lane] };
+                    // At equal distance the lower number wins, so that the order of the tree does not matter.
+                    let nearer = found.t < limit || best.is_none_or(|b| found.t == b.t && id < b.id);
+                    if found.t <= limit && nearer && accept(&found) {
+                        best = Some(found);
+                        limit = found.t;
+                        if any {
+                            return -1.0;
+                        }
+                    }
+                }
+            }
+            limit
+        });
+        best
+    }
+
+    /// The hit in f64. `t` counts from the true origin.
+    pub(super) fn refine(&self, ray: &LocalRay, hit: &Candidate) -> Refined {
+        refine(self.slot_vertices(hit.slot), ray, hit)
+    }
+}
+
+struct Packer<'a> {
+    triangles: &'a [[Vec3; 3]],
+    ids: &'a [[u32; 2]],
+    packets: Vec<Packet>,
+    slots: Vec<u32>,
+}
+
+impl Packer<'_> {
+    /// Stores triangles in packets of their own.
+    fn pack(&mut self, members: &[u32]) -> u32 {
+        let first = self.packets.len();
+        for group in members.chunks(LANES) {
+            let mut packet = Packet::empty();
+            for (lane, &member) in group.iter().enumerate() {
+                let triangle = self.triangles[member as usize].map(|p| p.to_array());
+                packet.set(lane, triangle, self.ids[member as usize]);
+                self.slots[member as usize] = (self.packets.len() * LANES + lane) as u32;
+            }
+            self.packets.push(packet);
+        }
+        tree::leaf(first, self.packets.len() - first)
+    }
+}
+
+/// Whether a triangle has finite vertices and an area.
+fn is_sound(triangle: &[Vec3; 3]) -> bool {
+    let [a, b, c] = triangle.map(|p| p.as_dvec3());
+    let area = (b - a).cross(c - a).length_squared();
+    area > 0.0 && area.is_finite()
+}
+
+fn padded_box(triangle: &[Vec3; 3]) -> Aabb {
+    let [a, b, c] = triangle.map(Vec3A::from);
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    let pad = Vec3A::splat(PADDING * low.abs().max(high.abs()).max_element());
+    Aabb::new(low - pad, high + pad)
+}
+
+/// Distance at which a ray is within a box: 0 if it starts there, none if it gets there after `t_max` or never.
+pub(super) fn enter(origin: DVec3, direction: DVec3, low: DVec3, high: DVec3, t_max: f64) -> Option<f64> {
+    if origin.cmpge(low).all() && origin.cmple(high).all() {
+        return (t_max >= 0.0).then_some(0.0);
+    }
+    let (mut near, mut far) = (0f64, t_max);
+    for axis in 0..3 {
+        let (low, high, along) = (low[axis] - origin[axis], high[axis] - origin[axis], direction[axis]);
+        if along == 0.0 && low <= 0.0 && high >= 0.0 {
+            continue;
+        }
+        let (a, b) = (low / along, high / along);
+        near = near.max(a.min(b));
+        far = far.min(a.max(b));
+    }
+    (near <= far).then_some(near)
+}
+
+/// Möller & Trumbore 1997 in f64, with the point kept inside the triangle.
+fn refine([a, b, c]: [DVec3; 3], ray: &LocalRay, hit: &Candidate) -> Refined {
+    let (ab, ac) = (b - a, c - a);
+    let p = ray.direction.cross(ac);
+    let inverse = 1.0 / ab.dot(p);
+    let from = ray.origin - a;
+    let q = from.cross(ab);
+    let (mut u, mut v) = (from.dot(p) * inverse, ray.direction.dot(q) * inverse);
+    if !(u.abs() <= 2.0 && v.abs() <= 2.0) {
+        // Edge-on: the determinant has no digits.
+        (u, v) = (f64::from(hit.u), f64::from(hit.v));
+    }
+    u = u.max(0.0);
+    v = v.max(0.0);
+    let sum = u + v;
+    if sum > 1.0 {
+        u /= sum;
+        v /= sum;
+    }
+    let t = (ab * u + ac * v - from).dot(ray.direction) / ray.direction.length_squared();
+    Refined { t, u, v }
+}

@@ -1,0 +1,251 @@
+//! What rays meet: triangles, found through trees of boxes.
+//!
+//! Meshes that are placed once become triangles in world space under one tree. Meshes that are placed many times keep
+//! one tree of their own, and a top level finds the placements. Both trees are eight children wide; `obvhs` builds the
+//! binary trees that they are cut from. Traversal is in f32 around a centre near the detail of the scene and is
+//! watertight (Woop, Benthin & Wald 2013); the hit is then computed again in f64.
+//!
+//! The same vertices that rays meet are what [`Geometry::vertices`] gives, so points on them are on the surface to the
+//! last digits of f64.
+
+mod bake;
+mod blas;
+mod build;
+mod lanes;
+mod offset;
+mod stack;
+#[cfg(test)]
+mod tests;
+mod tlas;
+mod tree;
+mod triangle;
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3, Vec3};
+use rayon::prelude::*;
+
+use crate::ray::Ray;
+use bake::{Baked, own_blas};
+use blas::{Blas, Candidate};
+use tlas::{Placed, Tlas};
+
+pub use offset::{Anchor, offset_origin, segment};
+
+/// Triangles of a mesh.
+#[derive(Clone, Debug, Default)]
+pub struct MeshGeometry {
+    /// Vertices in the mesh's space.
+    pub positions: Vec<Vec3>,
+    /// Three vertices each. Triangles with missing or infinite vertices or without area are never met.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// One placement of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct InstanceGeometry {
+    /// Which of the meshes.
+    pub mesh: usize,
+    /// Any affine map; singular ones are allowed.
+    pub to_world: DAffine3,
+}
+
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Number of the placement.
+    pub instance: u32,
+    /// Number of the triangle in its mesh.
+    pub triangle: u32,
+    /// Weight of the triangle's second vertex, in [0, 1].
+    pub u: f32,
+    /// Weight of the triangle's third vertex, in [0, 1 - `u`].
+    pub v: f32,
+    /// Distance along the ray.
+    pub t: f64,
+}
+
+/// Everything rays can meet. Immutable; any number of threads may ask it.
+#[derive(Debug)]
+pub struct Geometry {
+    places: Vec<Place>,
+    baked: Blas,
+    tlas: Tlas,
+    low: DVec3,
+    high: DVec3,
+}
+
+/// Where the triangles of a placement are.
+#[derive(Debug)]
+enum Place {
+    /// Among the world's triangles, from this one on.
+    Baked(u32),
+    /// This one of the top level's placements.
+    Own(u32),
+}
+
+/// Meshes placed many times are still baked if the copies come to fewer triangles than this: rays are faster then.
+const BAKED_COPIES: usize = 50_000;
+
+impl Geometry {
+    /// Prepares `instances` of `meshes`.
+    pub fn build(meshes: &[Arc<MeshGeometry>], instances: &[InstanceGeometry]) -> Self {
+        Self::build_baking(meshes, instances, BAKED_COPIES)
+    }
+
+    fn build_baking(meshes: &[Arc<MeshGeometry>], instances: &[InstanceGeometry], copies: usize) -> Self {
+        let mut uses = vec![0usize; meshes.len()];
+        for instance in instances {
+            if let Some(n) = uses.get_mut(instance.mesh) {
+                *n += 1;
+            }
+        }
+        let is_own =
+            |mesh: usize| (uses[mesh].saturating_sub(1)) * meshes[mesh].triangles.len() >= copies.max(1);
+        let own: Vec<Option<Arc<Blas>>> = (0..meshes.len())
+            .into_par_iter()
+            .map(|i| is_own(i).then(|| Arc::new(own_blas(&meshes[i]))))
+            .collect();
+
+        let mut baked = Baked::default();
+        let mut places = Vec::with_capacity(instances.len());
+        let mut placed = Vec::new();
+        for (number, instance) in instances.iter().enumerate() {
+            let blas = own.get(instance.mesh).and_then(Option::as_ref);
+            places.push(match blas.filter(|_| is_invertible(&instance.to_world)) {
+                Some(blas) => {
+                    placed.push(Placed {
+                        instance: number as u32,
+                        blas: Arc::clone(blas),
+                        to_world: instance.to_world,
+                        to_local: instance.to_world.inverse(),
+                    });
+                    Place::Own(placed.len() as u32 - 1)
+                }
+                None => Place::Baked(baked.add(number as u32, meshes.get(instance.mesh), instance.to_world)),
+            });
+        }
+        let (baked, tlas) = rayon::join(|| baked.build(), || Tlas::build(&placed));
+        let (mut low, mut high) =
+            (baked.bounds().0.min(tlas.bounds().0), baked.bounds().1.max(tlas.bounds().1));
+        if !low.cmple(high).all() {
+            (low, high) = (DVec3::ZERO, DVec3::ZERO);
+        }
+        Self { places, baked, tlas, low, high }
+    }
+
+    /// Two opposite corners of a box around everything; zero if there is nothing.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        (self.low, self.high)
+    }
+
+    /// The vertices of a triangle in world space, exactly where rays meet them.
+    pub fn vertices(&self, instance: u32, triangle: u32) -> [DVec3; 3] {
+        match &self.places[instance as usize] {
+            Place::Baked(first) => self.baked.vertices(first + triangle),
+            Place::Own(number) => {
+                let one = self.tlas.placement(*number);
+                one.blas.vertices(triangle).map(|p| one.to_world.transform_point3(p))
+            }
+        }
+    }
+
+    /// How far traversal may misplace a triangle of `instance` with these [`Self::vertices`] for rays that start on it:
+    /// the distance for [`offset_origin`].
+    pub fn rounding(&self, instance: u32, vertices: &[DVec3; 3]) -> f64 {
+        let [a, b, c] = *vertices;
+        let extent =
+            (b - a).length_squared().max((c - a).length_squared()).max((c - b).length_squared()).sqrt();
+        let mut reach = 0f64;
+        if let Some(center) = self.baked.center() {
+            reach = vertices.iter().fold(reach, |m, p| m.max((*p - center).abs().max_element()));
+        }
+        if let Place::Own(number) = &self.places[instance as usize] {
+            let one = self.tlas.placement(*number);
+            let m = one.to_world.matrix3;
+            let local = one.blas.reach();
+            let own = m.x_axis.abs() * local.x + m.y_axis.abs() * local.y + m.z_axis.abs() * local.z;
+            reach = reach.max(own.max_element());
+        }
+        offset::rounding(reach, extent)
+    }
+
+    /// The nearest hit for which `accept` holds, at a distance in (0, `t_max`]. Distances given to `accept` are those of
+    /// f32; it is called for some of the hits on the way, in no particular order.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
+        self.find::<false>(ray, accept)
+    }
+
+    /// Whether there is any hit for which `accept` holds, at a distance in (0, `t_max`].
+    #[inline]
+    pub fn occluded(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
+        self.find::<true>(ray, accept).is_some()
+    }
+
+    #[inline(always)]
+    fn find<const ANY: bool>(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
+        if ray.t_max <= 0.0 || ray.t_max.is_nan() {
+            return None;
+        }
+        let mut best = find_in::<ANY>(&self.baked, None, ray, &accept);
+        if ANY && best.is_some() {
+            return best;
+        }
+        let mut rest = Ray { t_max: best.map_or(ray.t_max, |hit| hit.t), ..*ray };
+        self.tlas.walk(ray.origin, ray.direction, rest.t_max, |one| {
+            let local = Ray {
+                origin: one.to_local.transform_point3(ray.origin),
+                direction: one.to_local.transform_vector3(ray.direction),
+                t_max: rest.t_max,
+            };
+            let found = find_in::<ANY>(&one.blas, Some(one.instance), &local, &accept);
+            if let Some(hit) = found.filter(|hit| best.is_none_or(|b| is_before(hit, &b))) {
+                best = Some(hit);
+                rest.t_max = if ANY { f64::NEG_INFINITY } else { hit.t };
+            }
+            rest.t_max
+        });
+        best
+    }
+
+    /// Bytes held by triangles, trees and placements.
+    pub fn memory(&self) -> usize {
+        size_of_val(&self.places[..]) + self.baked.memory() + self.tlas.memory()
+    }
+}
+
+/// At equal distance the lower number wins.
+fn is_before(a: &Hit, b: &Hit) -> bool {
+    a.t < b.t || (a.t == b.t && (a.instance, a.triangle) < (b.instance, b.triangle))
+}
+
+/// The nearest hit, or any, in one set of triangles. `ray` is in its space; `t` is the same in all spaces.
+#[inline(always)]
+fn find_in<const ANY: bool>(
+    blas: &Blas,
+    instance: Option<u32>,
+    ray: &Ray,
+    accept: &impl Fn(&Hit) -> bool,
+) -> Option<Hit> {
+    let local = blas.local_ray(ray.origin, ray.direction, ray.t_max)?;
+    let hit = |c: &Candidate, u: f32, v: f32, t: f64| Hit {
+        instance: instance.unwrap_or(c.id[0]),
+        triangle: c.id[1],
+        u,
+        v,
+        t,
+    };
+    let limit = (ray.t_max - local.start) as f32;
+    let found =
+        blas.closest(&local, limit, ANY, |c| accept(&hit(c, c.u, c.v, local.start + f64::from(c.t))))?;
+    let exact = blas.refine(&local, &found);
+    Some(hit(&found, exact.u as f32, exact.v as f32, exact.t.max(0.0).min(ray.t_max)))
+}
+
+fn is_invertible(map: &DAffine3) -> bool {
+    let m = map.matrix3;
+    let volume = m.determinant().abs();
+    let size = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
+    volume > 1e-12 * size && map.inverse().is_finite()
+}

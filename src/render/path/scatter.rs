@@ -1,0 +1,75 @@
+//! One step of a random walk: how a path goes on from a vertex.
+
+use glam::DVec3;
+
+use super::Vertex;
+use crate::{
+    bsdf::{Mode, Side},
+    math::Rgb,
+};
+
+/// Edges from the walk's start after which Russian roulette begins.
+pub const ROULETTE_DEPTH: usize = 5;
+
+/// A sampled continuation.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// World direction of the next vertex.
+    pub direction: DVec3,
+    /// Factors of f over density, roulette excluded.
+    pub weight: Rgb,
+    /// Native density (`Edge::density`), roulette excluded.
+    pub density: f64,
+    /// How the vertex scatters in this path.
+    pub mode: Mode,
+}
+
+impl Vertex {
+    /// Samples how a walk that came from `known` goes on.
+    pub fn scatter(&self, side: Side, known: DVec3, u_lobe: f64, u: [f64; 2]) -> Option<Step> {
+        let sample = self.bsdf.sample(side, self.frame.to_local(known), u_lobe, u)?;
+        if sample.mode != Mode::Smooth {
+            let step = self.dirac_step(side, known, sample.mode)?;
+            let weight = step.factor / step.density;
+            return Some(Step {
+                direction: step.direction,
+                weight,
+                density: step.density,
+                mode: sample.mode,
+            });
+        }
+        let direction = self.frame.to_world(sample.direction);
+        let (w_l, w_e) = oriented(side, known, direction);
+        let density = self.pdf(side, known, direction);
+        let factor = self.factor(w_l, w_e) * self.projected(direction);
+        (density > 0.0 && factor != Rgb::ZERO).then(|| Step {
+            direction,
+            weight: factor / density,
+            density,
+            mode: Mode::Smooth,
+        })
+    }
+
+    /// Native density of the step from this vertex in direction `new` for a walk that came from `known`, in the vertex's
+    /// mode, roulette excluded.
+    pub fn step_density(&self, side: Side, known: DVec3, new: DVec3) -> f64 {
+        match self.mode {
+            Mode::Smooth => self.pdf(side, known, new),
+            mode => self.dirac_step(side, known, mode).map_or(0.0, |step| step.density),
+        }
+    }
+
+    /// Probability that a walk survives Russian roulette after `edges` edges: a function of the place alone, so that it
+    /// is part of every density (design notes, evidence 10: the largest albedo of the material here).
+    pub fn survival(&self, edges: usize) -> f64 {
+        if edges < ROULETTE_DEPTH { 1.0 } else { self.bsdf.albedo_bound().clamp(0.05, 0.95) }
+    }
+}
+
+/// (towards the light, towards the eye) for a walk that came from `known` and goes to `new`.
+pub fn oriented(side: Side, known: DVec3, new: DVec3) -> (DVec3, DVec3) {
+    match side {
+        Side::TowardLight => (new, known),
+        Side::TowardEye => (known, new),
+    }
+}

@@ -1,0 +1,108 @@
+//! The world: a scene prepared for rendering, read-only from then on.
+
+mod cast;
+mod emission;
+mod prepare;
+mod surface;
+
+pub use prepare::{PrepareOptions, prepare};
+
+use ajar_scene::{Id, Mesh, Node, Scene};
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::{
+    bsdf::{Bsdf, Mode},
+    bvh::Geometry,
+    camera::Camera,
+    light::Lights,
+    material::Material,
+    math::Frame,
+    path::{Kind, Site, Vertex},
+    texture::Textures,
+};
+
+/// A mesh placed by a node.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// The mesh.
+    pub mesh: Id<Mesh>,
+    /// The node.
+    pub node: Id<Node>,
+    /// Index of its material.
+    pub material: u32,
+    /// From mesh space to the world.
+    pub to_world: DAffine3,
+    /// Turns normals into world space, scaled by what keeps the front side in front.
+    pub normal_to_world: DMat3,
+    /// −1 where `to_world` mirrors, so that counter-clockwise triangles would show their back, else 1.
+    pub handedness: f64,
+    /// Emitter index of its first triangle, if it emits.
+    pub first_emitter: Option<u32>,
+}
+
+/// A scene prepared for rendering.
+#[derive(Debug)]
+pub struct World {
+    /// Camera with film.
+    pub camera: Camera,
+    /// Emitters.
+    pub lights: Lights,
+    /// Length below which an edge carries no light, metres.
+    pub shortest_edge: f64,
+    /// The scene, its lights with a shape turned into meshes.
+    pub scene: Scene,
+    geometry: Geometry,
+    instances: Vec<Instance>,
+    materials: Vec<Material>,
+    textures: Textures,
+    /// Tangents per triangle corner, where a material needs them and the mesh has none.
+    tangents: Vec<Option<Vec<[glam::Vec4; 3]>>>,
+    has_alpha: bool,
+    has_culling: bool,
+    has_absorption: bool,
+}
+
+impl World {
+    /// The meshes placed in it.
+    pub fn instances(&self) -> &[Instance] {
+        &self.instances
+    }
+
+    /// Its materials, in the order of `Instance::material`.
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// Its geometry.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// Whether some surfaces let rays through by chance.
+    pub fn has_alpha(&self) -> bool {
+        self.has_alpha
+    }
+
+    /// The vertex at the lens point `p`.
+    pub fn lens_vertex(&self, p: DVec3) -> Vertex {
+        Vertex {
+            kind: Kind::Lens,
+            p,
+            ng: DVec3::Z,
+            frame: Frame { x: DVec3::X, y: DVec3::Y, z: DVec3::Z },
+            site: Site::default(),
+            bsdf: Bsdf::BLACK,
+            emitter: Vertex::NO_EMITTER,
+            rounding: 0.0,
+            mode: Mode::Smooth,
+        }
+    }
+
+    /// Whether rays leave `source` in one direction only, so that densities are per area.
+    pub fn fixed_direction(&self, source: &Vertex) -> bool {
+        match source.kind {
+            Kind::Lens => self.camera.is_orthographic(),
+            _ => source.direction_is_fixed(),
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! From a hit to a vertex: everything follows from instance, triangle and barycentrics, in f64.
+
+use ajar_scene::Mesh;
+use glam::{DVec3, Vec2, Vec4};
+
+use super::{Instance, World};
+use crate::{
+    bsdf::Mode,
+    bvh::Hit,
+    material::{Material, Place},
+    math::Frame,
+    path::{Kind, Site, Vertex},
+};
+
+/// A point of a triangle, for attribute lookups.
+#[derive(Clone, Copy)]
+pub(super) struct Point<'a> {
+    mesh: &'a Mesh,
+    corners: [usize; 3],
+    weights: [f64; 3],
+}
+
+impl Point<'_> {
+    fn mix2(&self, values: &[Vec2]) -> Vec2 {
+        let [a, b, c] = self.corners.map(|i| values[i].as_dvec2());
+        (a * self.weights[0] + b * self.weights[1] + c * self.weights[2]).as_vec2()
+    }
+
+    fn mix3(&self, values: [DVec3; 3]) -> DVec3 {
+        values[0] * self.weights[0] + values[1] * self.weights[1] + values[2] * self.weights[2]
+    }
+}
+
+impl Place for Point<'_> {
+    fn uv(&self, set: u32) -> Vec2 {
+        self.mesh.uvs.get(set as usize).map_or(Vec2::ZERO, |uvs| self.mix2(uvs))
+    }
+
+    fn color(&self) -> Vec4 {
+        let Some(colors) = &self.mesh.colors else { return Vec4::ONE };
+        let [a, b, c] = self.corners.map(|i| colors[i].as_dvec4());
+        (a * self.weights[0] + b * self.weights[1] + c * self.weights[2]).as_vec4()
+    }
+}
+
+impl World {
+    pub(super) fn point(&self, instance: &Instance, triangle: u32, uv: [f64; 2]) -> Point<'_> {
+        let mesh = &self.scene.meshes[instance.mesh];
+        let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
+        Point { mesh, corners, weights: [1.0 - uv[0] - uv[1], uv[0], uv[1]] }
+    }
+
+    /// The material of a surface vertex.
+    pub fn material_of(&self, vertex: &Vertex) -> &Material {
+        &self.materials[self.instances[vertex.site.instance as usize].material as usize]
+    }
+
+    /// Unit normal of a triangle's front, world space.
+    pub(super) fn triangle_normal(&self, instance: u32, triangle: u32) -> DVec3 {
+        let [a, b, c] = self.geometry.vertices(instance, triangle);
+        let handedness = self.instances[instance as usize].handedness;
+        (b - a).cross(c - a).normalize_or(DVec3::Z) * handedness
+    }
+
+    /// Coverage of the surface hit.
+    pub(super) fn opacity(&self, hit: &Hit) -> f64 {
+        let instance = &self.instances[hit.instance as usize];
+        let material = &self.materials[instance.material as usize];
+        if !material.has_alpha() {
+            return 1.0;
+        }
+        let point = self.point(instance, hit.triangle, [f64::from(hit.u), f64::from(hit.v)]);
+        material.opacity(&self.textures, &point)
+    }
+
+    /// First texture coordinates at a surface vertex.
+    pub fn uv(&self, vertex: &Vertex) -> Vec2 {
+        let Site { instance, triangle, uv } = vertex.site;
+        self.point(&self.instances[instance as usize], triangle, uv).uv(0)
+    }
+
+    /// Coverage at a surface vertex, 1 for everything else.
+    pub fn coverage(&self, vertex: &Vertex) -> f64 {
+        if !self.has_alpha || vertex.kind != Kind::Surface {
+            return 1.0;
+        }
+        let Site { instance, triangle, uv } = vertex.site;
+        let instance = &self.instances[instance as usize];
+        let point = self.point(instance, triangle, uv);
+        self.materials[instance.material as usize].opacity(&self.textures, &point)
+    }
+
+    /// The vertex at a hit.
+    pub(super) fn vertex(&self, hit: &Hit) -> Vertex {
+        self.surface(Site {
+            instance: hit.instance,
+            triangle: hit.triangle,
+            uv: [f64::from(hit.u), f64::from(hit.v)],
+        })
+    }
+
+    /// The vertex at a place of a surface, its mode smooth.
+    pub fn surface(&self, site: Site) -> Vertex {
+        let instance = &self.instances[site.instance as usize];
+        let material = &self.materials[instance.material as usize];
+        let point = self.point(instance, site.triangle, site.uv);
+        let corners = self.geometry.vertices(site.instance, site.triangle);
+        let [a, b, c] = corners;
+        let ng = (b - a).cross(c - a).normalize_or(DVec3::Z) * instance.handedness;
+        Vertex {
+            kind: Kind::Surface,
+            p: point.mix3(corners),
+            ng,
+            frame: self.shading_frame(instance, material, &point, site.triangle, ng),
+            site,
+            bsdf: material.bsdf(&self.textures, &point),
+            emitter: instance.first_emitter.map_or(Vertex::NO_EMITTER, |first| first + site.triangle),
+            rounding: self.geometry.rounding(site.instance, &corners),
+            mode: Mode::Smooth,
+        }
+    }
+
+    /// Shading frame: interpolated normal on the front side, tangent, normal map. It depends on the place alone, never on
+    /// who looks (mlt.md §1.3).
+    fn shading_frame(
+        &self,
+        instance: &Instance,
+        material: &Material,
+        point: &Point<'_>,
+        triangle: u32,
+        ng: DVec3,
+    ) -> Frame {
+        let in_front = |n: DVec3| if n.dot(ng) < 0.0 { -n } else { n };
+        let smooth = point.mesh.normals.as_ref().and_then(|normals| {
+            let local = point.mix3(point.corners.map(|i| normals[i].as_dvec3()));
+            (instance.normal_to_world * local).try_normalize()
+        });
+        let ns = smooth.map_or(ng, in_front);
+        let Some(tangent) = self.tangent(instance, point, triangle) else { return Frame::from_z(ns) };
+        let frame = Frame::from_zx(ns, instance.to_world.transform_vector3(tangent.truncate()));
+        let Some(mapped) = material.mapped_normal(&self.textures, point) else { return frame };
+        let bitangent = frame.y * tangent.w * instance.handedness;
+        let n = (frame.x * mapped.x + bitangent * mapped.y + ns * mapped.z).try_normalize();
+        n.map_or(frame, |n| Frame::from_zx(in_front(n), frame.x))
+    }
+
+    fn tangent(&self, instance: &Instance, point: &Point<'_>, triangle: u32) -> Option<glam::DVec4> {
+        let corners = match &self.tangents[instance.mesh.index()] {
+            Some(generated) => generated[triangle as usize],
+            None => {
+                let given = point.mesh.tangents.as_ref()?;
+                point.corners.map(|i| given[i])
+            }
+        };
+        let direction = point.mix3(corners.map(|t| t.truncate().as_dvec3()));
+        Some(direction.extend(if corners[0].w < 0.0 { -1.0 } else { 1.0 }))
+    }
+}

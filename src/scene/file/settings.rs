@@ -1,0 +1,71 @@
+//! `[render]` and `[output]`.
+
+use std::ops::Bound;
+
+use toml::de::DeValue;
+
+use super::{
+    keys::Keys,
+    report::Complaint,
+    value::{ANY, flag, number, numbers, quantity, text, texts, whole},
+};
+use crate::{OutputSettings, RenderSettings, parse_duration, parse_percent};
+
+/// Largest width or height of an image.
+const MAX_SIZE: i64 = 65_535;
+
+/// Reads `[render]`.
+pub(super) fn render(mut keys: Keys<'_>) -> RenderSettings {
+    let settings = RenderSettings {
+        integrator: keys.optional("integrator", text),
+        camera: keys.optional("camera", text),
+        size: keys.optional("size", size),
+        spp: keys.optional("spp", whole(1..=i64::from(u32::MAX))).map(|spp| spp as u32),
+        rounds: keys.optional("rounds", whole(1..)).map(|rounds| rounds as u64),
+        time: keys.optional("time", quantity(parse_duration)),
+        noise: keys.optional("noise", quantity(parse_percent)),
+        seed: keys.optional("seed", whole(0..)).map(|seed| seed as u64),
+        max_depth: keys.optional("max_depth", whole(1..=i64::from(u32::MAX))).map(|depth| depth as u32),
+        crop: keys.optional("crop", crop),
+    };
+    if settings.noise == Some(0.0) {
+        keys.complain("noise", Complaint::new("must be greater than 0, is 0"));
+    }
+    if settings.time.is_some_and(|time| time.is_zero()) {
+        keys.complain("time", Complaint::new("must be greater than 0, is 0"));
+    }
+    keys.finish();
+    settings
+}
+
+/// Reads `[output]`.
+pub(super) fn output(mut keys: Keys<'_>) -> OutputSettings {
+    let settings = OutputSettings {
+        path: keys.optional("path", text).map(Into::into),
+        png: keys.optional("png", text).map(Into::into),
+        tone_map: keys.optional("tone_map", text),
+        exposure: keys.optional("exposure", number(ANY)),
+        aov: keys.optional("aov", texts),
+        float: keys.optional("float", flag),
+    };
+    keys.finish();
+    settings
+}
+
+fn size(value: &DeValue<'_>) -> Result<[u32; 2], Complaint> {
+    let sides = numbers::<2>((Bound::Included(1.0), Bound::Included(MAX_SIZE as f64)))(value)?;
+    if sides.iter().all(|side| side.fract() == 0.0) {
+        Ok(sides.map(|side| side as u32))
+    } else {
+        Err(Complaint::new("must be whole numbers of pixels"))
+    }
+}
+
+fn crop(value: &DeValue<'_>) -> Result<[f64; 4], Complaint> {
+    let crop @ [left, right, top, bottom] = numbers::<4>(0.0..=1.0)(value)?;
+    if left < right && top < bottom {
+        Ok(crop)
+    } else {
+        Err(Complaint::new("must be left < right and top < bottom, in the order [left, right, top, bottom]"))
+    }
+}

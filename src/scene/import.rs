@@ -1,0 +1,95 @@
+//! The contract of importers: bytes below a folder become a [`Scene`], with a report of what was left out.
+
+use std::path::{Path, PathBuf};
+
+use crate::{Diagnostic, Scene};
+
+/// What an importer is given.
+#[derive(Clone, Debug)]
+pub struct ImportRequest {
+    /// The file to read.
+    pub path: PathBuf,
+    /// Folders below which files may be read besides the file's own folder.
+    pub allowed: Vec<PathBuf>,
+    /// No importer may hold more than this many bytes that the file alone asks for.
+    pub memory_limit: u64,
+}
+
+impl ImportRequest {
+    /// A request with the defaults: only the file's own folder, 8 GiB.
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        Self { path: path.into(), allowed: Vec::new(), memory_limit: 8 << 30 }
+    }
+
+    /// The folder of the file.
+    pub fn folder(&self) -> &Path {
+        match self.path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        }
+    }
+
+    /// Turns a reference inside the file (already percent-decoded) into a path that may be read.
+    ///
+    /// # Errors
+    /// A reference that leaves the allowed folders (also through symbolic links), is absolute, or does not exist.
+    pub fn resolve(&self, reference: &str) -> Result<PathBuf, Diagnostic> {
+        let refuse = |why: &str| {
+            Diagnostic::error(format!("\"{}\" {why}", reference.escape_debug())).in_file(&self.path)
+        };
+        if reference.is_empty() {
+            return Err(refuse("is not a file"));
+        }
+        if reference.contains("://") {
+            return Err(refuse("is on the network; only files beside the scene are read"));
+        }
+        let real = self
+            .folder()
+            .join(reference.replace('\\', "/"))
+            .canonicalize()
+            .map_err(|e| refuse(&format!("cannot be read: {e}")))?;
+        let inside = |folder: &Path| folder.canonicalize().is_ok_and(|folder| real.starts_with(folder));
+        if inside(self.folder()) || self.allowed.iter().any(|folder| inside(folder)) {
+            Ok(real)
+        } else {
+            Err(refuse("lies outside the scene's folder").hint("move it there or allow its folder"))
+        }
+    }
+}
+
+/// What an importer returns.
+#[derive(Clone, Debug, Default)]
+pub struct Imported {
+    /// The scene.
+    pub scene: Scene,
+    /// What was approximated or dropped, each once.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Every file that was read or looked for, for watch mode.
+    pub files: Vec<PathBuf>,
+}
+
+/// One row of the support table that `ajar formats` prints.
+#[derive(Clone, Copy, Debug)]
+pub struct Feature {
+    /// Name of the feature or extension.
+    pub name: &'static str,
+    /// What of it is supported, in words.
+    pub support: &'static str,
+}
+
+/// Reads one file format.
+pub trait Importer: Sync {
+    /// Short name, `gltf`.
+    fn name(&self) -> &'static str;
+    /// Extensions without dot, lower case.
+    fn extensions(&self) -> &'static [&'static str];
+    /// Whether the first bytes of a file (up to 256) look like this format, for files with a foreign extension.
+    fn sniff(&self, head: &[u8]) -> bool;
+    /// What is supported.
+    fn features(&self) -> &'static [Feature];
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// A diagnostic with file and place. Never panics, whatever the file contains.
+    fn import(&self, request: &ImportRequest) -> Result<Imported, Diagnostic>;
+}

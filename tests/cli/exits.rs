@@ -1,0 +1,120 @@
+//! Exit codes, and what is said with them.
+
+use std::fs;
+
+use crate::bench::{Bench, SCENE};
+
+#[test]
+fn what_the_command_line_gets_wrong_is_2() {
+    let bench = Bench::new();
+    for (arguments, says) in [
+        ("", "Usage"),
+        ("rendre leaf.gltf", "render"),
+        ("render", "FILE"),
+        ("render leaf.gltf --sise 8x8", "--size"),
+        ("render leaf.gltf --size 8", "640x480"),
+        ("render leaf.gltf --spp 0", "--spp"),
+        ("render leaf.gltf --time soon", "--time"),
+        ("render leaf.gltf --crop 0,2,0,1", "--crop"),
+        ("render leaf.gltf --crop 0,1,0,1 --pixel-bounds 0,1,0,1", "cannot be used with"),
+        ("render leaf.gltf --pixel-bounds 2000,2001,0,1", "no pixel"),
+        ("render leaf.gltf --integrator photon", "bdpt"),
+        ("render leaf.gltf --aov colour", "albedo"),
+        ("render leaf.gltf --tone-map filmic", "agx"),
+        ("render kitchen/scene.toml --camera side", "main, top"),
+        ("render leaf.gltf --quiet --verbose", "cannot be used with"),
+        ("validate", "FILE"),
+        ("inspect leaf.gltf --xml", "--xml"),
+    ] {
+        let run = bench.run(arguments).exits(2).says(&[says]);
+        assert_eq!(run.out, "", "{arguments}");
+    }
+    assert_eq!(bench.files(), ["kitchen", "leaf.gltf"], "nothing is written");
+}
+
+#[test]
+fn what_a_file_gets_wrong_is_3() {
+    let bench = Bench::new();
+    bench.write("cut.gltf", r#"{ "asset": { "version": "2.0" }, "nodes": [ "#);
+    bench.write("text.abc", "a file of no format");
+    bench.write("out.exr", "precious");
+    for command in ["render", "validate", "inspect"] {
+        let output = if command == "render" { "-o out.exr" } else { "" };
+        for (file, says) in [
+            ("absent.gltf", "absent.gltf: error: "),
+            ("absent.obj", "absent.obj: error: "),
+            ("absent.toml", "absent.toml: error: "),
+            ("absent", "absent: error: "),
+            ("cut.gltf", "cut.gltf:1:"),
+            ("text.abc", "text.abc: error: "),
+        ] {
+            bench.run(&format!("{command} {file} {output}")).exits(3).says(&[says]);
+        }
+    }
+    assert_eq!(fs::read_to_string(bench.path("out.exr")).unwrap(), "precious");
+    assert!(!bench.has("out.png"));
+}
+
+#[test]
+fn mistakes_in_a_scene_file_have_line_column_and_advice() {
+    let bench = Bench::new();
+    for (good, bad, says) in [
+        ("illuminance", "iluminance", ["scene.toml:19:1: error: ", "\"illuminance\""]),
+        ("[[camera]]", "[[camara]]", ["scene.toml:5:", "\"camera\""]),
+        ("directional", "directionl", ["scene.toml:17:8: error: ", "\"directional\""]),
+        ("spp = 4", "spp = 0", ["scene.toml:23:7: error: ", "spp"]),
+        ("box.obj", "bax.obj", ["scene.toml:3:8: error: ", "bax.obj"]),
+        ("spp = 4", "spp = ", ["scene.toml:23:", "error: "]),
+        ("spp = 4", "integrator = \"photon\"", ["photon", "bdpt"]),
+    ] {
+        assert!(SCENE.contains(good), "{good}");
+        bench.write("kitchen/scene.toml", &SCENE.replacen(good, bad, 1));
+        let code = if bad.contains("photon") { 2 } else { 3 };
+        bench.run("render kitchen/scene.toml").exits(code).says(&says);
+    }
+    assert_eq!(bench.files(), ["kitchen", "leaf.gltf"], "nothing is written");
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_1() {
+    let bench = Bench::new();
+    bench
+        .run("render leaf.gltf --size 8x8 --spp 1 -o leaf.gltf/out.exr")
+        .exits(1)
+        .says(&["leaf.gltf", "cannot write"]);
+}
+
+#[test]
+fn strict_makes_warnings_errors() {
+    let bench = Bench::new();
+    bench.write("lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n");
+    for command in ["validate", "inspect"] {
+        bench.run(&format!("{command} lines.obj")).exits(0);
+        bench.run(&format!("{command} lines.obj --strict")).exits(3).says(&["lines.obj:5:", "warning: "]);
+    }
+    bench.run("render lines.obj --size 8x8 --spp 1 --strict").exits(3).says(&["lines.obj:5:"]);
+    assert!(!bench.has("lines.exr"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_render_is_5_and_saved() {
+    use std::io::{BufRead, BufReader};
+
+    let bench = Bench::new();
+    let arguments = "render kitchen/scene.toml -o out.exr --time 10m --stats-json stats.json";
+    let mut child = bench.command(arguments).spawn().unwrap();
+    let mut errors = BufReader::new(child.stderr.take().unwrap()).lines();
+    // The line says that rounds are done; no line at all would mean that the program has ended.
+    errors.find(|line| line.as_ref().unwrap().contains("round ")).expect("a line of progress");
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    errors.for_each(drop);
+    let status = child.wait().unwrap();
+    assert_eq!(status.code(), Some(5), "{status}");
+    assert!(bench.image("out.exr").mean() > 0.01 && bench.has("out.png"));
+    let stats: serde_json::Value =
+        serde_json::from_slice(&fs::read(bench.path("stats.json")).unwrap()).unwrap();
+    assert_eq!(stats["complete"], false);
+    assert!(stats["rounds"].as_u64().unwrap() > 0);
+}

@@ -1,0 +1,143 @@
+//! Runs `ajar validate` on one file with limits on time and memory.
+
+use std::{
+    ffi::OsString,
+    fs::{self, File},
+    path::{Path, PathBuf},
+    process::{Command, ExitStatus, Stdio},
+    time::{Duration, Instant},
+};
+
+/// Seconds of processor time, where the system can limit it: unlike time on the clock it does not depend on what else
+/// the machine does.
+const CPU_SECONDS: u32 = 5;
+
+/// Time on the clock after which the program counts as hung.
+const HANG: Duration = Duration::from_secs(120);
+
+/// Address space of the program, bytes; the file is given a quarter of it.
+const MEMORY: u64 = 512 << 20;
+
+/// Bytes of messages about one file. More would bury what matters.
+const MESSAGES: usize = 64 << 10;
+
+/// What must become of a file.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Fate {
+    /// Exit code 3 and an error.
+    Refused,
+    /// Exit code 0 and a warning.
+    Warned,
+    /// Exit code 0 without warning.
+    Clean,
+    /// Refused, or read with or without warnings.
+    Either,
+}
+
+/// A folder for hostile files, and what went wrong with them so far.
+pub struct Jail {
+    folder: tempfile::TempDir,
+    escapes: Vec<String>,
+}
+
+impl Jail {
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap(), escapes: Vec::new() }
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Writes a file that others refer to.
+    pub fn put(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    /// Writes a file and checks what becomes of it.
+    pub fn try_file(&mut self, name: &str, bytes: impl AsRef<[u8]>, fate: Fate) {
+        let path = self.put(name, bytes);
+        self.try_path(&path, fate);
+    }
+
+    /// Checks what becomes of a file.
+    pub fn try_path(&mut self, path: &Path, fate: Fate) {
+        let (status, messages) = self.validate(path);
+        if let Err(why) = judge(path, status, &messages, fate) {
+            let shown: String = messages.chars().take(600).collect();
+            self.escapes.push(format!("{}: {why}\n{shown}", path.display()));
+        }
+    }
+
+    fn validate(&self, path: &Path) -> (Option<ExitStatus>, String) {
+        let log = self.path("messages.log");
+        let mut command = limited();
+        command.args(["validate", "--memory-limit", &(MEMORY / 4).to_string()]).arg(path);
+        // Every thread reserves address space for itself, so there should not be one for each core.
+        command.env("RAYON_NUM_THREADS", "2").env("MALLOC_ARENA_MAX", "2");
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(File::create(&log).unwrap());
+        let mut child = command.spawn().unwrap();
+        let start = Instant::now();
+        let status = loop {
+            match child.try_wait().unwrap() {
+                Some(status) => break Some(status),
+                None if start.elapsed() > HANG => {
+                    child.kill().unwrap();
+                    child.wait().unwrap();
+                    break None;
+                }
+                None => std::thread::sleep(Duration::from_millis(2)),
+            }
+        };
+        (status, String::from_utf8_lossy(&fs::read(log).unwrap()).into_owned())
+    }
+
+    /// Fails with all files that had another fate than they should.
+    pub fn close(self) {
+        let count = self.escapes.len();
+        assert!(count == 0, "{count} files:\n\n{}", self.escapes.join("\n\n"));
+    }
+}
+
+/// The program below the limits that the system can set.
+fn limited() -> Command {
+    let ajar = env!("CARGO_BIN_EXE_ajar");
+    let limits = [format!("--as={MEMORY}"), format!("--cpu={CPU_SECONDS}"), "--core=0".into()];
+    let mut probe = Command::new("prlimit");
+    if !probe.args(&limits).arg("true").status().is_ok_and(|status| status.success()) {
+        println!("skipped: limits on memory and processor time, for lack of prlimit");
+        return Command::new(ajar);
+    }
+    let mut command = Command::new("prlimit");
+    command.args(limits).arg(OsString::from(ajar));
+    command
+}
+
+fn judge(path: &Path, status: Option<ExitStatus>, messages: &str, fate: Fate) -> Result<(), String> {
+    let Some(status) = status else { return Err("it hangs".into()) };
+    let Some(code) = status.code() else { return Err(format!("it ends with {status}")) };
+    // Messages about a file that this one refers to name that file, which lies in the same folder.
+    let folder = path.parent().unwrap();
+    let known = [folder.to_path_buf(), folder.canonicalize().unwrap()];
+    let said = |what: &str| {
+        let about = |line: &str| known.iter().any(|k| line.starts_with(&*k.to_string_lossy()));
+        messages.lines().any(|line| about(line) && line.contains(what))
+    };
+    if messages.contains("panicked") || messages.contains("this is a defect") {
+        return Err("it panics".into());
+    }
+    if messages.len() > MESSAGES {
+        return Err(format!("{} bytes of messages", messages.len()));
+    }
+    match (code, fate) {
+        (3, Fate::Refused | Fate::Either) if said("error: ") => Ok(()),
+        (3, Fate::Refused | Fate::Either) => Err("no error names the file".into()),
+        (0, Fate::Warned) if said("warning: ") => Ok(()),
+        (0, Fate::Clean) if !said("warning: ") => Ok(()),
+        (0, Fate::Either) => Ok(()),
+        _ => Err(format!("exit code {code}")),
+    }
+}
