@@ -18,8 +18,8 @@ pub(super) struct Accessor<'a> {
     normalized: bool,
     width: usize,
     dense: Option<Elements<'a>>,
-    /// Elements that are replaced, increasing, and what replaces them.
-    sparse: Option<(Vec<u32>, Elements<'a>)>,
+    /// Elements that are replaced, increasing, each with its place in what replaces them.
+    sparse: Option<(Vec<(u32, u32)>, Elements<'a>)>,
 }
 
 /// Elements at equal distances.
@@ -95,7 +95,9 @@ impl<'a> Accessor<'a> {
         };
         let opened =
             Self { count, kind: kind.0, normalized: accessor.normalized, width, dense, sparse: None };
-        opened.with_sparse(asset, context, index)
+        let opened = opened.with_sparse(asset, context, index);
+        context.opened.insert(index);
+        opened
     }
 
     fn with_sparse(
@@ -128,13 +130,20 @@ impl<'a> Accessor<'a> {
         let values = &sparse.values;
         let size = self.width * self.kind.size();
         let values = elements(values.buffer_view.value(), values.byte_offset.0, size, ".values")?;
-        context.charge(count * 4, &element)?;
-        let replaced: Vec<_> = (0..count as usize).map(|i| whole(&from, kind.0, i)).collect();
-        if !replaced.is_sorted_by(|a, b| a < b) || replaced.last().is_some_and(|&last| last >= self.count) {
-            return Err(error(
-                ".indices",
-                "the indices do not increase, or point beyond the accessor".into(),
-            ));
+        context.charge(count * 8, &element)?;
+        let mut replaced: Vec<_> =
+            (0..count as u32).map(|slot| (whole(&from, kind.0, slot as usize), slot)).collect();
+        if !replaced.is_sorted_by(|a, b| a.0 < b.0) {
+            if !context.opened.contains(&index) {
+                let message = "the indices do not increase; the last of equal ones counts";
+                context.report.warn(format!("{element}.indices"), message);
+            }
+            replaced.sort_by_key(|&(index, slot)| (index, std::cmp::Reverse(slot)));
+            replaced.dedup_by_key(|&mut (index, _)| index);
+        }
+        if let Some((last, _)) = replaced.last().filter(|(last, _)| *last >= self.count) {
+            let message = format!("points to element {last}, but there are only {}", self.count);
+            return Err(error(".indices", message));
         }
         self.sparse = Some((replaced, values));
         Ok(self)
@@ -159,9 +168,9 @@ impl<'a> Accessor<'a> {
     /// Where the element is stored, if it is.
     fn locate(&self, index: u32) -> Option<(&Elements<'a>, usize)> {
         if let Some((indices, values)) = &self.sparse
-            && let Ok(at) = indices.binary_search(&index)
+            && let Ok(at) = indices.binary_search_by_key(&index, |&(index, _)| index)
         {
-            return Some((values, at));
+            return indices.get(at).map(|&(_, slot)| (values, slot as usize));
         }
         self.dense.as_ref().map(|elements| (elements, index as usize))
     }
@@ -205,7 +214,7 @@ pub(super) fn check_unused(asset: &Asset, context: &mut Context) {
             asset.root.accessors.get(index).map(|accessor| accessor.type_),
             Some(Checked::Valid(Type::Mat2 | Type::Mat3 | Type::Mat4))
         );
-        if matrix {
+        if matrix || context.opened.contains(&index) {
             continue;
         }
         if let Err(error) = Accessor::open(asset, context, index, &[1, 2, 3, 4], "anything") {

@@ -94,7 +94,7 @@ pub(super) fn check(document: &Map<String, Value>, report: &mut Report) -> Resul
         .hint("export the file without this extension"));
     }
     let mut used = BTreeMap::new();
-    for (key, value) in document {
+    for (key, value) in document.iter().filter(|(key, _)| *key != "extras") {
         find(value, key.clone(), &mut used);
     }
     if let Some(value) = document.get("extensions") {

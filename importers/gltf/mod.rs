@@ -70,6 +70,8 @@ struct Context<'a> {
     report: Report,
     files: Vec<PathBuf>,
     budget: u64,
+    /// Accessors that something has asked for.
+    opened: HashSet<usize>,
 }
 
 impl Context<'_> {
@@ -97,6 +99,7 @@ fn read(request: &ImportRequest) -> Result<Imported, Diagnostic> {
         report: Report::default(),
         files: vec![request.path.clone()],
         budget: request.memory_limit,
+        opened: HashSet::new(),
     };
     let file = uri::read_file(&request.path, &mut context, "the file").map_err(|mut error| {
         error.element = None;

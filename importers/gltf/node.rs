@@ -104,9 +104,6 @@ fn transform(node: &gltf::json::Node, context: &mut Context, element: &str) -> R
         }
     };
     if transform.is_finite() {
-        if node.mesh.is_some() && transform.matrix3.determinant() == 0.0 {
-            context.report.warn(element, "the transform flattens its mesh");
-        }
         Ok(transform)
     } else {
         Err(Diagnostic::error("the transform is not finite").element(element))

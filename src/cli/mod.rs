@@ -21,7 +21,7 @@ use clap::{Parser, Subcommand};
 pub use exit::Exit;
 
 /// What the help of every command ends with.
-const EXIT_CODES: &str = "Exit codes: 0 ok, 1 render failed, 2 usage, 3 asset or scene invalid, \
+const EXIT_CODES: &str = "Exit codes: 0 ok, 1 render failed, 2 usage, 3 asset or scene invalid,\n\
     4 resource limit, 5 interrupted with a partial result saved.";
 
 /// A renderer for asset pipelines: glTF, OBJ and scene.toml to OpenEXR.

@@ -144,7 +144,8 @@ fn next_event_estimate(
     let Some((x0, density)) = world.lights.sample(choice, u) else { return Rgb::ZERO };
     let Some(edge) = Edge::between(&x0, here, world.shortest_edge) else { return Rgb::ZERO };
     let geometry = x0.projected(edge.to_eye) * here.projected(edge.to_eye) * edge.falloff;
-    let value = here.factor(-edge.to_eye, w_e) * world.emitted(&x0, edge.to_eye) * (geometry / density);
+    let scattering = here.evaluate(-edge.to_eye, w_e);
+    let value = scattering.value * world.emitted(&x0, edge.to_eye) * (geometry / density);
     if value == Rgb::ZERO {
         return value;
     }
@@ -152,7 +153,6 @@ fn next_event_estimate(
     if value == Rgb::ZERO || !x0.can_be_met() {
         return value * world.coverage(&x0);
     }
-    let native = here.pdf(Side::TowardLight, w_e, -edge.to_eye) * survival;
-    let met = edge.density(native, here, &x0, false);
+    let met = edge.density(scattering.toward_light * survival, here, &x0, false);
     value * (world.coverage(&x0) * density / (density + met))
 }

@@ -59,7 +59,7 @@ impl Grid2d {
     /// A density proportional to `weights`, rows of `columns` cells, the first row at y = 0. Weights that are negative
     /// or not finite count as zero. `None` if nothing is left or the weights fill no whole rows.
     pub fn new(columns: usize, weights: &[f64]) -> Option<Self> {
-        if columns == 0 || weights.len() % columns != 0 {
+        if columns == 0 || !weights.len().is_multiple_of(columns) {
             return None;
         }
         let mut conditional = vec![0.0; weights.len() / columns * (columns + 1)];

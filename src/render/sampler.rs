@@ -17,6 +17,8 @@ pub struct Sobol {
     dimension: u32,
     /// The four dimensions around `dimension`.
     set: [f32; 4],
+    /// State of the stream of low bits.
+    low: u32,
     rng: Rng,
 }
 
@@ -25,12 +27,14 @@ impl Sobol {
     /// spread; after every 2¹⁶ of them a new scramble begins.
     pub fn new(seed: u64, round: u32, pixel: u64, sample: u32) -> Self {
         let scrambles = SCRAMBLE | u64::from(sample >> SAMPLE_BITS) << 31 | pixel;
+        let mut rng = Rng::new(seed, Purpose::Sobol, round, pixel << 32 | u64::from(sample));
         Self {
+            low: rng.next_u32(),
             scramble: Rng::new(seed, Purpose::Sobol, round, scrambles).next_u32(),
             sample: sample & ((1 << SAMPLE_BITS) - 1),
             dimension: 0,
             set: [0.0; 4],
-            rng: Rng::new(seed, Purpose::Sobol, round, pixel << 32 | u64::from(sample)),
+            rng,
         }
     }
 
@@ -45,8 +49,15 @@ impl Sobol {
         }
         self.dimension += 1;
         // The tables give 23 bits; 29 random ones follow, so that no two values tie and none lies on a cell's corner.
-        let low = f64::from(self.rng.next_u32() >> 3) * (1.0 / (1u64 << 52) as f64);
+        let low = f64::from(self.low_bits() >> 3) * (1.0 / (1u64 << 52) as f64);
         f64::from(self.set[dimension as usize % 4]) + low
+    }
+
+    /// A cheap stream for bits below the tables' resolution (O'Neill 2014, PCG-RXS-M-XS 32).
+    fn low_bits(&mut self) -> u32 {
+        self.low = self.low.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+        let word = ((self.low >> ((self.low >> 28) + 4)) ^ self.low).wrapping_mul(277_803_737);
+        (word >> 22) ^ word
     }
 
     /// Two numbers in [0, 1) that are evenly spread as a pair: both from one set of four dimensions.

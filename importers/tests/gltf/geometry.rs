@@ -159,18 +159,27 @@ fn sparse_accessors_replace_elements_or_start_from_zero() {
 }
 
 #[test]
-fn sparse_indices_must_increase_and_stay_inside() {
-    for indices in [[3u8, 1], [1, 1], [1, 4]] {
+fn sparse_indices_must_stay_inside_and_should_increase() {
+    let with = |indices: [u8; 3]| {
         let mut asset = Asset::new();
         let view = asset.view(&indices, json!({}));
-        let values = asset.view(&floats(&[1.0; 6]), json!({}));
+        let values = asset.view(&floats(&[1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 3.0, 3.0, 3.0]), json!({}));
         let indices = json!({"bufferView": view, "componentType": UNSIGNED_BYTE});
-        let sparse = json!({"count": 2, "indices": indices, "values": {"bufferView": values}});
+        let sparse = json!({"count": 3, "indices": indices, "values": {"bufferView": values}});
         asset
             .push("accessors", json!({"componentType": FLOAT, "type": "VEC3", "count": 4, "sparse": sparse}));
-        asset.primitive(json!({}));
-        assert_eq!(failure(&asset).0, "accessors[0].sparse.indices");
+        asset.primitive(json!({"mode": 5}));
+        asset
+    };
+    for (indices, expected) in [([3, 0, 1], [2.0, 3.0, 0.0, 1.0]), ([2, 1, 2], [0.0, 2.0, 3.0, 0.0])] {
+        let asset = with(indices);
+        assert_eq!(points(&only_mesh(&asset)), expected);
+        let expected =
+            "accessors[0].sparse.indices: the indices do not increase; the last of equal ones counts";
+        assert_eq!(warnings(&asset.import().unwrap()), [expected]);
     }
+    let expected = "points to element 4, but there are only 4";
+    assert_eq!(failure(&with([1, 2, 4])), ("accessors[0].sparse.indices".into(), expected.into()));
 }
 
 #[test]

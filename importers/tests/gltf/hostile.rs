@@ -1,6 +1,11 @@
 //! Damaged files: whatever happens to the bytes, the importer answers, quickly, and what it returns holds together.
 
-use std::{fs, path::Path, time::Duration, time::Instant};
+use std::{
+    fs,
+    path::Path,
+    sync::atomic::{AtomicUsize, Ordering},
+    time::{Duration, Instant},
+};
 
 use ajar_importers::gltf::Gltf;
 use ajar_scene::{ImportRequest, Importer, Scene, Severity};
@@ -77,6 +82,7 @@ fn rich() -> Asset {
 
 /// Every handle, index, length and number of the scene is as promised.
 fn hold_together(scene: &Scene) {
+    assert!(scene.validate().iter().all(|found| found.severity < Severity::Error), "{:?}", scene.validate());
     for mesh in scene.meshes.iter() {
         let count = mesh.positions.len();
         assert!(mesh.positions.iter().all(|p| p.is_finite()));
@@ -126,10 +132,12 @@ fn hold_together(scene: &Scene) {
     assert!(scene.placed().len() <= reached + scene.roots.len());
 }
 
-/// Whether the file was taken.
-fn survives(path: &Path, bytes: &[u8], what: &str) -> bool {
-    fs::write(path, bytes).unwrap();
-    let request = ImportRequest { memory_limit: MEMORY, ..ImportRequest::new(path) };
+/// Whether the file was taken. Each has a name of its own: overwriting makes some file systems wait for the disk.
+fn survives(folder: &Path, bytes: &[u8], what: &str) -> bool {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let path = folder.join(format!("{}.gltf", COUNT.fetch_add(1, Ordering::Relaxed)));
+    fs::write(&path, bytes).unwrap();
+    let request = ImportRequest { memory_limit: MEMORY, ..ImportRequest::new(&path) };
     let start = Instant::now();
     let outcome = Gltf.import(&request);
     assert!(start.elapsed() < HANG, "{what}: {:?}", start.elapsed());
@@ -162,11 +170,7 @@ fn truncated_files() {
     let folder = tempfile::tempdir().unwrap();
     for (name, file) in [("a.gltf", rich().text()), ("a.glb", rich().glb())] {
         for length in (0..file.len()).step_by(11) {
-            assert!(!survives(
-                &folder.path().join(name),
-                &file[..length],
-                &format!("{name} cut at {length}")
-            ));
+            assert!(!survives(folder.path(), &file[..length], &format!("{name} cut at {length}")));
         }
     }
 }
@@ -182,7 +186,7 @@ fn flipped_bits() {
                 let at = random.below(damaged.len());
                 damaged[at] ^= 1 << random.below(8);
             }
-            survives(&folder.path().join(name), &damaged, &format!("{name} flipped, round {round}"));
+            survives(folder.path(), &damaged, &format!("{name} flipped, round {round}"));
         }
     }
 }
@@ -234,7 +238,6 @@ fn pointers(value: &Value, path: String, found: &mut Vec<String>) {
 #[test]
 fn changed_values() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.gltf");
     let asset = rich();
     let (mut found, odd, mut random) = (Vec::new(), odd_values(), Random(2));
     pointers(&asset.json, String::new(), &mut found);
@@ -253,7 +256,7 @@ fn changed_values() {
         if !damaged.json.is_object() {
             continue;
         }
-        taken += usize::from(survives(&path, &damaged.text(), &format!("round {round}: {what}")));
+        taken += usize::from(survives(folder.path(), &damaged.text(), &format!("round {round}: {what}")));
     }
     // The damage must be neither harmless nor always fatal, or this test tests nothing.
     assert!((200..1800).contains(&taken), "{taken}");
@@ -262,28 +265,27 @@ fn changed_values() {
 #[test]
 fn amplification_is_refused_or_quick() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.gltf");
     let mut asset = Asset::new();
     asset.positions(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     let indices = asset.accessor(UNSIGNED_BYTE, "SCALAR", 300_000, &[0, 1, 2].repeat(100_000), json!({}));
     let primitive = json!({"attributes": {"POSITION": 0}, "indices": indices});
     asset.push("meshes", json!({"primitives": vec![primitive; 20_000]}));
-    assert!(!survives(&path, &asset.text(), "many primitives over the same indices"));
+    assert!(!survives(folder.path(), &asset.text(), "many primitives over the same indices"));
 
     let mut asset = Asset::new();
     let zeros =
         asset.push("accessors", json!({"componentType": 5126, "type": "VEC3", "count": u32::MAX - 1}));
     asset.push("meshes", json!({"primitives": [{"attributes": {"POSITION": zeros}}]}));
-    assert!(!survives(&path, &asset.text(), "zeros without data"));
+    assert!(!survives(folder.path(), &asset.text(), "zeros without data"));
 
     // A small primitive over a huge array must not pay for the array.
     let indices = asset.accessor(UNSIGNED_BYTE, "SCALAR", 3, &[0, 1, 2], json!({}));
     asset.json["meshes"][0]["primitives"] =
         json!(vec![json!({"attributes": {"POSITION": zeros}, "indices": indices}); 1000]);
-    assert!(survives(&path, &asset.text(), "few indices into many zeros"));
+    assert!(survives(folder.path(), &asset.text(), "few indices into many zeros"));
 
     let nodes: Vec<_> = (0..100_000).map(|i| json!({"children": [(i + 1) % 100_000]})).collect();
     let mut asset = Asset::new();
     asset.json["nodes"] = json!(nodes);
-    assert!(!survives(&path, &asset.text(), "a long cycle"));
+    assert!(!survives(folder.path(), &asset.text(), "a long cycle"));
 }

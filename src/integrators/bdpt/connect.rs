@@ -2,7 +2,7 @@
 
 use ajar_render::{
     World,
-    bsdf::{Mode, Side},
+    bsdf::{Evaluation, Mode},
     math::Rgb,
     path::{Edge, Kind, Stop, Subpath, Vertex, sweep::Densities},
 };
@@ -102,7 +102,8 @@ impl<'w> Connector<'w> {
             return Contribution::NONE;
         };
         let emitted = self.world.emitted(x0, edge.to_eye) * (self.world.coverage(x0) / density);
-        let value = emitted * self.eye_factor(&end, x0, &edge);
+        let at_eye = end.vertex.evaluate(-edge.to_eye, end.to_previous);
+        let value = emitted * end.throughput * at_eye.value * geometry(x0, &end.vertex, &edge);
         let value = self.visible(value, x0, &end.vertex, &edge);
         if value == Rgb::ZERO {
             return Contribution::NONE;
@@ -110,7 +111,7 @@ impl<'w> Connector<'w> {
         self.fill_eye(eye, t, 1);
         self.connectable[0] = true;
         self.to_eye[0] = self.emission_density(x0, &end.vertex, &edge);
-        self.join_eye(eye, &end, x0, &edge, t, 1);
+        self.join_eye(eye, &end, &at_eye, x0, &edge, (1, t));
         Contribution { value, weight: self.weight(x0, 1, t) }
     }
 
@@ -122,16 +123,21 @@ impl<'w> Connector<'w> {
         let Some(edge) = Edge::between(&l.vertex, &e.vertex, self.world.shortest_edge) else {
             return Contribution::NONE;
         };
-        let value = l.vertex.factor(l.to_previous, edge.to_eye) * l.throughput;
-        let value = value * self.eye_factor(&e, &l.vertex, &edge);
+        let at_light = l.vertex.evaluate(l.to_previous, edge.to_eye);
+        if at_light.value == Rgb::ZERO {
+            return Contribution::NONE;
+        }
+        let at_eye = e.vertex.evaluate(-edge.to_eye, e.to_previous);
+        let scattered = l.throughput * at_light.value * at_eye.value * e.throughput;
+        let value = scattered * geometry(&l.vertex, &e.vertex, &edge);
         let value = self.visible(value, &l.vertex, &e.vertex, &edge);
         if value == Rgb::ZERO {
             return Contribution::NONE;
         }
         self.fill_light(light, s, t);
         self.fill_eye(eye, t, s);
-        self.join_light(light, &l, &e.vertex, &edge, s, t);
-        self.join_eye(eye, &e, &l.vertex, &edge, t, s);
+        self.join_light(light, &l, &at_light, &e.vertex, &edge, (s, t));
+        self.join_eye(eye, &e, &at_eye, &l.vertex, &edge, (s, t));
         Contribution { value, weight: self.weight(&light.stops[0].vertex, s, t) }
     }
 
@@ -141,8 +147,8 @@ impl<'w> Connector<'w> {
         let seen = self.world.camera.connect(end.vertex.p, lens)?;
         let lens = self.world.lens_vertex(seen.lens);
         let edge = Edge { to_eye: seen.direction, length: seen.distance, falloff: 1.0 };
-        let factor = end.vertex.factor(end.to_previous, seen.direction);
-        let value = end.throughput * factor * (end.vertex.projected(seen.direction) * seen.importance);
+        let scattering = end.vertex.evaluate(end.to_previous, seen.direction);
+        let value = end.throughput * scattering.value * (end.vertex.projected(seen.direction) * seen.importance);
         let value = self.visible(value, &end.vertex, &lens, &edge);
         if value == Rgb::ZERO {
             return None;
@@ -151,7 +157,7 @@ impl<'w> Connector<'w> {
         self.fill_light(light, s, 1);
         self.connectable[k] = true;
         self.to_light[k] = seen.importance * end.vertex.projected(seen.direction);
-        self.join_light(light, &end, &lens, &edge, s, 1);
+        self.join_light(light, &end, &scattering, &lens, &edge, (s, 1));
         let weight = self.weight(&light.stops[0].vertex, s, 1);
         Some(Splat { raster: seen.raster, found: Contribution { value, weight } })
     }
@@ -159,12 +165,6 @@ impl<'w> Connector<'w> {
     /// `value` times what of it crosses the edge; no ray is cast for nothing.
     fn visible(&self, value: Rgb, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
         if value == Rgb::ZERO { value } else { value * self.world.transmittance(light, eye, edge) }
-    }
-
-    /// Throughput, scattering and geometry of the eye side of a connection.
-    fn eye_factor(&self, end: &End, light: &Vertex, edge: &Edge) -> Rgb {
-        let geometry = light.projected(edge.to_eye) * end.vertex.projected(edge.to_eye) * edge.falloff;
-        end.vertex.factor(-edge.to_eye, end.to_previous) * end.throughput * geometry
     }
 
     fn emission_density(&self, x0: &Vertex, x1: &Vertex, edge: &Edge) -> f64 {
@@ -195,27 +195,39 @@ impl<'w> Connector<'w> {
     }
 
     /// Steps around the eye end, whose light-side neighbour is `light`.
-    fn join_eye(&mut self, eye: &Subpath, end: &End, light: &Vertex, edge: &Edge, t: usize, s: usize) {
+    fn join_eye(
+        &mut self,
+        eye: &Subpath,
+        end: &End,
+        at: &Evaluation,
+        light: &Vertex,
+        edge: &Edge,
+        (s, t): (usize, usize),
+    ) {
         let (x, previous) = (&end.vertex, &eye.stops[t - 2].vertex);
         self.connectable[s] = true;
         self.to_light[s + 1] = eye.stops[t - 1].arrival_as_end * previous.survival(t - 2);
-        let toward_light = x.pdf(Side::TowardLight, end.to_previous, -edge.to_eye) * x.survival(t - 1);
-        self.to_light[s] = edge.density(toward_light, x, light, false);
+        self.to_light[s] = edge.density(at.toward_light * x.survival(t - 1), x, light, false);
         let Some(back) = Edge::between(x, previous, 0.0) else { return };
-        let toward_eye = x.pdf(Side::TowardEye, -edge.to_eye, end.to_previous) * x.survival(s);
-        self.to_eye[s] = back.density(toward_eye, x, previous, false);
+        self.to_eye[s] = back.density(at.toward_eye * x.survival(s), x, previous, false);
     }
 
     /// Steps around the light end, whose eye-side neighbour is `eye`.
-    fn join_light(&mut self, light: &Subpath, end: &End, eye: &Vertex, edge: &Edge, s: usize, t: usize) {
+    fn join_light(
+        &mut self,
+        light: &Subpath,
+        end: &End,
+        at: &Evaluation,
+        eye: &Vertex,
+        edge: &Edge,
+        (s, t): (usize, usize),
+    ) {
         let (x, previous) = (&end.vertex, &light.stops[s - 2].vertex);
         self.connectable[s - 1] = true;
         self.to_eye[s - 2] = light.stops[s - 1].arrival_as_end * previous.survival(s - 2);
-        let toward_eye = x.pdf(Side::TowardEye, end.to_previous, edge.to_eye) * x.survival(s - 1);
-        self.to_eye[s - 1] = edge.density(toward_eye, x, eye, false);
+        self.to_eye[s - 1] = edge.density(at.toward_eye * x.survival(s - 1), x, eye, false);
         let Some(back) = Edge::between(previous, x, 0.0) else { return };
-        let toward_light = x.pdf(Side::TowardLight, edge.to_eye, end.to_previous) * x.survival(t);
-        self.to_light[s - 1] = back.density(toward_light, x, previous, false);
+        self.to_light[s - 1] = back.density(at.toward_light * x.survival(t), x, previous, false);
     }
 
     fn weight(&self, x0: &Vertex, s: usize, t: usize) -> f64 {
@@ -230,4 +242,9 @@ impl<'w> Connector<'w> {
         }
         .balance_weight(s)
     }
+}
+
+/// Geometric term G without visibility.
+fn geometry(light: &Vertex, eye: &Vertex, edge: &Edge) -> f64 {
+    light.projected(edge.to_eye) * eye.projected(edge.to_eye) * edge.falloff
 }

@@ -200,22 +200,22 @@ fn blend(widths: Widths, cos: f64, row: impl Fn(usize) -> DVec4) -> Albedo {
     if widths.aspect == 1.0 {
         return Albedo::from_table(at(widths.narrow));
     }
-    anisotropic(
-        Albedo::from_table((at(widths.narrow) + at(widths.wide)) * 0.5),
-        f64::from(widths.aspect),
-        cos,
-    )
+    let (narrow, wide) = (Albedo::from_table(at(widths.narrow)), Albedo::from_table(at(widths.wide)));
+    anisotropic(narrow, wide, f64::from(widths.aspect), cos)
 }
 
 /// Tables are of isotropic surfaces. Anisotropic ones lose less along their wide axis at grazing angles and are given
 /// only that part of the loss back which integration has shown to be lost in every azimuth.
-fn anisotropic(mean: Albedo, aspect: f64, cos: f64) -> Albedo {
+fn anisotropic(narrow: Albedo, wide: Albedo, aspect: f64, cos: f64) -> Albedo {
     let certain = aspect + (1.0 - aspect) * 0.4 * (cos / 0.3).min(1.0);
-    let total = 1.0 - certain * (1.0 - mean.total);
-    let scale = total / mean.total.max(1e-6);
-    let (reflected, edge) = (mean.reflected * scale, mean.edge * scale);
-    let lost = (1.0 - reflected - mean.transmitted).max(0.0);
-    Albedo { total, reflected, edge, transmitted: mean.transmitted + (1.0 - aspect) * lost }
+    let mean = 0.5 * (narrow.total + wide.total);
+    let total = 1.0 - certain * (1.0 - mean);
+    let scale = total / mean.max(1e-6);
+    let reflected = (narrow.reflected.max(wide.reflected) * scale).min(total);
+    let edge = narrow.edge.max(wide.edge) * scale;
+    let transmitted = 0.5 * (narrow.transmitted + wide.transmitted);
+    let lost = (1.0 - reflected - transmitted).max(0.0);
+    Albedo { total, reflected, edge, transmitted: transmitted + (1.0 - aspect) * lost }
 }
 
 /// Cosine-weighted average over the hemisphere of a function of the cosine, from `n` samples of it.
@@ -260,24 +260,25 @@ fn integrate_row(alpha: f64, eta: f64) -> [[f32; 4]; NODES] {
 fn integrate_direction(ggx: &Ggx, cos: f64, eta: f64) -> Albedo {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     // Total reflection cuts sharply through what is seen from inside.
-    let (radii, azimuths) = if eta < 1.0 { (24, 20) } else { (16, 10) };
+    let (radii, azimuths) = if eta < 1.0 { (32, 24) } else { (16, 10) };
     let w = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-    let mut sum = DVec4::ZERO;
+    let (mut sum, mut whole) = (DVec4::ZERO, 0.0);
     for j in 0..azimuths {
         let axis = DVec2::from_angle(PI * (f64::from(j) + 0.5) / f64::from(azimuths));
         for i in 0..radii {
-            // 1 − r² = t³, of which the area element is 3 t² dt.
+            // 1 − r² = t³, whose element is in proportion to t² dt.
             let t = (f64::from(i) + (f64::from(j) * GOLDEN + 0.5).fract()) / f64::from(radii);
             let normal = ggx.visible_normal(w, axis * (1.0 - t * t * t).sqrt());
             let scattered = normal.map_or(DVec4::ZERO, |h| scatter(ggx, w, h, eta));
-            sum += scattered * (3.0 * t * t / f64::from(radii * azimuths));
+            sum += scattered * (t * t);
+            whole += t * t;
         }
     }
     if eta == 1.0 {
         // Without bending the roughness has no effect: everything passes.
-        sum.w = 1.0;
+        sum.w = whole;
     }
-    Albedo::from_table(sum)
+    Albedo::from_table(sum / whole)
 }
 
 /// What comes of light from `w` that meets a visible microfacet of normal `h`.

@@ -193,8 +193,9 @@ impl Layered {
             let share = self.transmitting * view.passed;
             specular += self.transmitting * (normal * near.reflected + edge * near.edge);
             diffuse += self.transmitting * normal * (1.0 - self.crossing(view)) * view.body_gap;
-            transmitted =
-                share * base * if self.thin { near.total - near.reflected } else { near.transmitted };
+            transmitted = share
+                * base
+                * if self.thin { (near.total - near.reflected).max(0.0) } else { near.transmitted };
             across = share * base * self.crossing(view) * view.body_gap;
         }
         let body = self.opaque * base * view.under * view.body_passed;

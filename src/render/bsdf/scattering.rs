@@ -152,7 +152,8 @@ impl Layered {
         if pair.density == 0.0 {
             return bounced;
         }
-        let through = 1.0 - self.interface.fresnel(pair.facet[0], a.inside);
+        // From the front in either case: the same number both ways, even where it vanishes.
+        let through = 1.0 - self.interface.fresnel(pair.facet[usize::from(a.inside)], false);
         let microfacets = through * pair.density * self.ggx.visibility(pair.a, pair.b);
         let [facet_a, facet_b] = pair.facet;
         let spread = match pair.kind {

@@ -165,6 +165,14 @@ impl Blas {
         best
     }
 
+    /// Whether the true ray, in f64, goes towards the plane of the triangle that it was found to hit.
+    #[inline]
+    pub(super) fn is_ahead(&self, ray: &LocalRay, hit: &Candidate) -> bool {
+        let [a, b, c] = self.slot_vertices(hit.slot);
+        let normal = (b - a).cross(c - a);
+        (ray.origin - a).dot(normal) * ray.direction.dot(normal) < 0.0
+    }
+
     /// The hit in f64. `t` counts from the true origin.
     pub(super) fn refine(&self, ray: &LocalRay, hit: &Candidate) -> Refined {
         refine(self.slot_vertices(hit.slot), ray, hit)

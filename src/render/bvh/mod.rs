@@ -237,8 +237,10 @@ fn find_in<const ANY: bool>(
         t,
     };
     let limit = (ray.t_max - local.start) as f32;
-    let found =
-        blas.closest(&local, limit, ANY, |c| accept(&hit(c, c.u, c.v, local.start + f64::from(c.t))))?;
+    let found = blas.closest(&local, limit, ANY, |c| {
+        // At grazing angles rounding can put a plane behind the origin in front of it.
+        blas.is_ahead(&local, c) && accept(&hit(c, c.u, c.v, local.start + f64::from(c.t)))
+    })?;
     let exact = blas.refine(&local, &found);
     Some(hit(&found, exact.u as f32, exact.v as f32, exact.t.max(0.0).min(ray.t_max)))
 }

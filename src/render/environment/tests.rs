@@ -71,7 +71,9 @@ fn the_image_hangs_as_usd_says() {
     // The centre faces +Z; seen from inside −X is to the right of it.
     assert_eq!(at(&straight, -0.1, -0.1, 1.0), (4.0, 2.0));
     assert_eq!(at(&straight, 0.1, -0.1, 1.0), (3.0, 2.0));
-    assert_eq!(at(&straight, 1.0, 0.1, 0.1), (1.0, 1.0));
+    // Longitude +π/2, the border of columns 1 and 2, is +X.
+    assert_eq!(at(&straight, 1.0, 0.1, -0.1), (1.0, 1.0));
+    assert_eq!(at(&straight, 1.0, 0.1, 0.1), (2.0, 1.0));
     assert_eq!(at(&straight, 0.0, 1.0, 0.0).1, 0.0);
     assert_eq!(at(&straight, 0.0, -1.0, 0.0).1, 3.0);
     // A light turned from +Z to +X shows its centre there.

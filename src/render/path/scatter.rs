@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Vertex;
+use super::{DiracStep, Vertex};
 use crate::{
     bsdf::{Mode, Side},
     math::Rgb,
@@ -20,6 +20,8 @@ pub struct Step {
     pub weight: Rgb,
     /// Native density (`Edge::density`), roulette excluded.
     pub density: f64,
+    /// Native density of the reverse step, from the next vertex back to where the walk came from.
+    pub back: f64,
     /// How the vertex scatters in this path.
     pub mode: Mode,
 }
@@ -29,34 +31,29 @@ impl Vertex {
     pub fn scatter(&self, side: Side, known: DVec3, u_lobe: f64, u: [f64; 2]) -> Option<Step> {
         let sample = self.bsdf.sample(side, self.frame.to_local(known), u_lobe, u)?;
         if sample.mode != Mode::Smooth {
-            let step = self.dirac_step(side, known, sample.mode)?;
-            let weight = step.factor / step.density;
-            return Some(Step {
-                direction: step.direction,
-                weight,
-                density: step.density,
-                mode: sample.mode,
-            });
+            return self.dirac_scatter(side, known, sample.mode);
         }
         let direction = self.frame.to_world(sample.direction);
         let (w_l, w_e) = oriented(side, known, direction);
-        let density = self.pdf(side, known, direction);
-        let factor = self.factor(w_l, w_e) * self.projected(direction);
+        let found = self.evaluate(w_l, w_e);
+        let (density, back) = match side {
+            Side::TowardLight => (found.toward_light, found.toward_eye),
+            Side::TowardEye => (found.toward_eye, found.toward_light),
+        };
+        let factor = found.value * self.projected(direction);
         (density > 0.0 && factor != Rgb::ZERO).then(|| Step {
             direction,
             weight: factor / density,
             density,
+            back,
             mode: Mode::Smooth,
         })
     }
 
-    /// Native density of the step from this vertex in direction `new` for a walk that came from `known`, in the vertex's
-    /// mode, roulette excluded.
-    pub fn step_density(&self, side: Side, known: DVec3, new: DVec3) -> f64 {
-        match self.mode {
-            Mode::Smooth => self.pdf(side, known, new),
-            mode => self.dirac_step(side, known, mode).map_or(0.0, |step| step.density),
-        }
+    fn dirac_scatter(&self, side: Side, known: DVec3, mode: Mode) -> Option<Step> {
+        let DiracStep { direction, factor, density } = self.dirac_step(side, known, mode)?;
+        let back = self.dirac_step(side.other(), direction, mode).map_or(0.0, |reverse| reverse.density);
+        Some(Step { direction, weight: factor / density, density, back, mode })
     }
 
     /// Probability that a walk survives Russian roulette after `edges` edges: a function of the place alone, so that it

@@ -127,8 +127,7 @@ impl Subpath {
         }
         vertex.mode = step.mode;
         here.arrival = edge.density(leg.density, source, vertex, world.fixed_direction(source));
-        let back = vertex.step_density(side.other(), step.direction, here.to_previous);
-        here.back = edge.density(back, vertex, source, false);
+        here.back = edge.density(step.back, vertex, source, false);
         Some(Leg {
             origin: vertex.leave(step.direction),
             direction: step.direction,

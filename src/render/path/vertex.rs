@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::{
-    bsdf::{Bsdf, Mode, Side},
+    bsdf::{Bsdf, Evaluation, Mode, Side},
     bvh::{Anchor, offset_origin},
     math::{Frame, Rgb},
 };
@@ -113,18 +113,15 @@ impl Vertex {
         (s * g > 0.0 && g.abs() >= MIN_COSINE).then(|| (s / g).abs())
     }
 
-    /// Scattering factor of f for light that comes from `w_l` and leaves to `w_e` (mlt.md §1.3): the radiance BSDF times
-    /// |w_l·Ns| / |w_l·Ng|. Geometric terms carry geometric cosines. Smooth lobes only.
-    pub fn factor(&self, w_l: DVec3, w_e: DVec3) -> Rgb {
+    /// Scattering of light that comes from `w_l` and leaves to `w_e`, smooth lobes only (mlt.md §1.3). `value` is the
+    /// vertex's factor of f: the radiance BSDF times |w_l·Ns| / |w_l·Ng|, since geometric terms carry geometric cosines.
+    /// The densities are per solid angle.
+    pub fn evaluate(&self, w_l: DVec3, w_e: DVec3) -> Evaluation {
         let (Some(ratio), Some(_)) = (self.shading_ratio(w_l), self.shading_ratio(w_e)) else {
-            return Rgb::ZERO;
+            return Evaluation::default();
         };
-        self.bsdf.eval(self.frame.to_local(w_l), self.frame.to_local(w_e)) * ratio
-    }
-
-    /// Solid-angle density of sampling `new` at a smooth event of a walk that came from `known`.
-    pub fn pdf(&self, side: Side, known: DVec3, new: DVec3) -> f64 {
-        self.bsdf.pdf(side, self.frame.to_local(known), self.frame.to_local(new))
+        let found = self.bsdf.evaluate(self.frame.to_local(w_l), self.frame.to_local(w_e));
+        Evaluation { value: found.value * ratio, ..found }
     }
 
     /// The Dirac event of this vertex's `mode` for a walk that came from `known`.

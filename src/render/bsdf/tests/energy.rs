@@ -34,9 +34,7 @@ fn furnace(name: &str, sides: &[f64], with_roughness: impl Fn(f64) -> SurfacePar
         for cos in COSINES {
             for side in sides {
                 let a = albedo(&bsdf, at(cos * side, 0.3), 96).x;
-                if (a - 1.0).abs() >= 0.005 {
-                    println!("XX {name} roughness {roughness} cos {}: {a}", cos * side);
-                }
+                assert!((a - 1.0).abs() < 0.005, "{name} roughness {roughness} cos {}: {a}", cos * side);
                 worst = worst.max((a - 1.0).abs());
             }
         }
@@ -74,7 +72,7 @@ fn lossless_surfaces_return_all_light() {
 fn no_surface_returns_more_light_than_it_gets() {
     let mut rng = rng(1);
     let mut most = 0f64;
-    for i in 0..3000 {
+    for i in 0..500 {
         let p = random_parameters(&mut rng);
         // Odd ones white, where gain would show.
         let p = if i % 2 == 0 { p } else { SurfaceParameters { base_color: Rgb::ONE, ..p } };
@@ -82,25 +80,13 @@ fn no_surface_returns_more_light_than_it_gets() {
         if w.z.abs() < 1e-3 {
             continue;
         }
-        let a = albedo(&Bsdf::new(&p), w, 48).max_element();
-        most = most.max(a);
+        let bsdf = Bsdf::new(&p);
+        let mut a = albedo(&bsdf, w, 40).max_element();
         if a > 1.003 {
-            println!(
-                "TOP {a:.4} {:.4} a{:.3} r{:.3} m{:.2} T{:.2} s{:.2} ior{} thin{} coat{:.2} {:.2} {} z {:.4}",
-                albedo(&Bsdf::new(&p), w, 160).max_element(),
-                p.anisotropy,
-                p.roughness,
-                p.metallic,
-                p.transmission,
-                p.specular,
-                p.ior,
-                p.thin_walled,
-                p.coat,
-                p.coat_roughness,
-                p.coat_ior,
-                w.z
-            );
+            a = albedo(&bsdf, w, 160).max_element();
         }
+        most = most.max(a);
+        assert!(a < 1.005, "{a} for {p:?} {w}");
     }
     println!("largest albedo {most:.5}");
 }
@@ -159,7 +145,7 @@ fn albedo_estimates_are_near_the_mean() {
             .sum();
         let excess = bsdf.albedo() - mean;
         // Anisotropic surfaces lose more than the tables dare to say.
-        let most = if p.anisotropy > 0.0 { 0.1 } else { 0.06 };
+        let most = if p.anisotropy > 0.0 { 0.2 } else { 0.06 };
         let fair = excess.min_element() > -0.04 && excess.max_element() < most;
         assert!(fair, "{name}: {mean} estimated as {}", bsdf.albedo());
     }

@@ -34,14 +34,15 @@ fn placements_under_the_top_level_look_like_baked_ones() {
     let mut rng = rng(3);
     let (mut met, mut different) = (0, 0);
     for _ in 0..20_000 {
-        let origin = DVec3::new(1.5, -2.0, 1.0) + in_cube(&mut rng) * 6.0;
-        let ray = Ray::new(origin, direction(&mut rng));
+        let middle = DVec3::new(1.5, -2.0, 1.0);
+        let origin = middle + in_cube(&mut rng) * 6.0;
+        let ray = Ray::new(origin, (middle + in_cube(&mut rng) * 2.0 - origin).normalize());
         let (a, b) = (own.intersect(&ray, |_| true), baked.intersect(&ray, |_| true));
         assert_eq!(own.occluded(&ray, |_| true), a.is_some());
         met += usize::from(a.is_some());
         match (a, b) {
-            (Some(a), Some(b)) if (a.instance, a.triangle) == (b.instance, b.triangle) => {
-                assert!((a.t - b.t).abs() < 1e-4, "{a:?} {b:?}");
+            // Which triangle of the flat placement is met is up to rounding.
+            (Some(a), Some(b)) if (a.t - b.t).abs() < 1e-4 => {
                 let [p, q, r] = own.vertices(a.instance, a.triangle);
                 let (u, v) = (f64::from(a.u), f64::from(a.v));
                 let point = p * (1.0 - u - v) + q * u + r * v;
@@ -51,7 +52,7 @@ fn placements_under_the_top_level_look_like_baked_ones() {
             _ => different += 1,
         }
     }
-    assert!(met > 2000 && different <= met / 500, "{different} of {met}");
+    assert!(met > 5000 && different <= met / 1000, "{different} of {met}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod hits;
 mod instances;
+mod lanes;
 mod rounding;
 mod watertight;
 

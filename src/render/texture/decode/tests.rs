@@ -1,6 +1,9 @@
 use std::{io::Write, sync::Arc};
 
-use ::exr::prelude::*;
+use ::exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image as Exr, IntegerBounds, Layer, LayerAttributes,
+    WritableImage,
+};
 use glam::Vec4;
 use half::f16;
 use image::{DynamicImage, ImageBuffer, ImageFormat, codecs::hdr::HdrEncoder};
@@ -130,7 +133,7 @@ fn exr_file(
     let list = channels.iter().map(|(name, samples)| AnyChannel::new(*name, samples.clone())).collect();
     let attributes = LayerAttributes { layer_position: position.into(), ..LayerAttributes::default() };
     let layer = Layer::new((3, 2), attributes, encoding, AnyChannels::sort(list));
-    let mut image = Image::from_layer(layer);
+    let mut image = Exr::from_layer(layer);
     image.attributes.display_window = IntegerBounds::new((0, 0), display);
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes).unwrap();

@@ -1,0 +1,102 @@
+//! Every bidirectional technique alone estimates the same light (mlt.md §2.4 a), and the weights sum to one.
+#![allow(clippy::unwrap_used, reason = "a failing test panics")]
+
+mod common;
+
+use ajar_integrators::bdpt::{Connector, Contribution};
+use ajar_render::{
+    World,
+    math::scalar,
+    path::Subpath,
+    rng::{Purpose, Rng},
+};
+use ajar_scene::{Input, Material};
+use common::{Builder, pinhole, shapes};
+use glam::{DVec2, DVec3, Vec3};
+use rayon::prelude::*;
+
+const MAX_EDGES: usize = 5;
+const BATCHES: u64 = 64;
+const SAMPLES: u64 = 4000;
+
+/// Sums per number of edges and technique: alone, and weighted.
+#[derive(Clone, Default)]
+struct Sums {
+    alone: [[f64; MAX_EDGES + 1]; MAX_EDGES + 1],
+    weighted: [f64; MAX_EDGES + 1],
+}
+
+impl Sums {
+    fn add(&mut self, s: usize, t: usize, found: Contribution) {
+        let k = s + t - 1;
+        self.alone[k][s] += scalar(found.value) / SAMPLES as f64;
+        self.weighted[k] += scalar(found.weighted()) / SAMPLES as f64;
+    }
+}
+
+fn batch(world: &World, batch: u64) -> Sums {
+    let mut sums = Sums::default();
+    let (mut eye, mut light, mut connector) =
+        (Subpath::default(), Subpath::default(), Connector::new(world, 1.0));
+    for sample in 0..SAMPLES {
+        let mut rng = Rng::new(3, Purpose::Test, batch as u32, sample);
+        let size = f64::from(world.camera.width);
+        let ray = world.camera.ray(DVec2::new(rng.f64(), rng.f64()) * size, rng.pair());
+        eye.trace_eye(world, world.lens_vertex(ray.origin), ray.direction, MAX_EDGES + 1, &mut rng);
+        light.trace_light(world, MAX_EDGES, &mut rng);
+        for t in 2..=eye.len() {
+            sums.add(0, t, connector.hit(&eye, t));
+            if t > MAX_EDGES {
+                continue;
+            }
+            let (x0, density) = world.lights.sample(rng.f64(), rng.pair()).unwrap();
+            sums.add(1, t, connector.next_event(&x0, density, &eye, t));
+            for s in 2..=light.len().min(MAX_EDGES + 1 - t) {
+                sums.add(s, t, connector.connect(&light, s, &eye, t));
+            }
+        }
+        for s in 2..=light.len() {
+            if let Some(splat) = connector.splat(&light, s, rng.pair()) {
+                sums.add(s, 1, splat.found);
+            }
+        }
+    }
+    sums
+}
+
+/// Mean over the batches and its standard error.
+fn estimate(batches: &[Sums], value: impl Fn(&Sums) -> f64) -> (f64, f64) {
+    let n = batches.len() as f64;
+    let mean = batches.iter().map(&value).sum::<f64>() / n;
+    let variance = batches.iter().map(|b| (value(b) - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    (mean, (variance / n).sqrt())
+}
+
+#[test]
+fn all_techniques_find_the_same_light() {
+    let mut b = Builder::default();
+    let white = b.diffuse(Vec3::splat(0.7));
+    let metal = b.material(Material {
+        metallic: Input::constant(1.0),
+        roughness: Input::constant(0.7),
+        ..Material::default()
+    });
+    let lamp = b.emitter(Vec3::splat(5.0));
+    b.mesh(shapes::cuboid(Vec3::splat(-1.0), Vec3::splat(1.0), true), white);
+    b.mesh(shapes::sphere(Vec3::new(0.2, -0.5, -0.1), 0.4, 8, true), metal);
+    b.mesh(shapes::quad(Vec3::new(-0.6, 0.9, -0.6), Vec3::X * 1.2, Vec3::Z * 1.2), lamp);
+    b.camera(pinhole(1.2), DVec3::new(0.0, 0.1, 0.95), DVec3::ZERO);
+    let world = b.world(16);
+    let batches: Vec<Sums> = (0..BATCHES).into_par_iter().map(|i| batch(&world, i)).collect();
+    for k in 2..=MAX_EDGES {
+        let (reference, error) = estimate(&batches, |b| b.weighted[k]);
+        for s in 0..=k {
+            let (mean, own_error) = estimate(&batches, |b| b.alone[k][s]);
+            let z = (mean - reference) / error.hypot(own_error);
+            println!("k {k} s {s}: {mean:.5} ± {own_error:.5}, weighted {reference:.5} ± {error:.5}, z {z:.2}");
+            // 18 techniques: 4 standard errors are met by chance once in a thousand runs.
+            assert!(z.abs() < 4.0, "{k} edges, technique {s}");
+            assert!(own_error < 0.1 * mean, "{k} edges, technique {s}: too noisy to tell");
+        }
+    }
+}
