@@ -85,7 +85,8 @@ pub(super) fn check(document: &Map<String, Value>, report: &mut Report) -> Resul
         let list = document.get(list).and_then(Value::as_array).into_iter().flatten();
         list.filter_map(Value::as_str).map(str::to_string)
     };
-    for (i, name) in names("extensionsRequired").enumerate().filter(|(_, name)| !is_supported(name)) {
+    let mut required = names("extensionsRequired").enumerate();
+    if let Some((i, name)) = required.find(|(_, name)| !is_supported(name)) {
         return Err(Diagnostic::error(format!(
             "the file requires {}, which is not supported",
             name.escape_debug()

@@ -5,7 +5,7 @@ use ajar_render::{
     bsdf::{Mode, Side},
     film::RoundFilm,
     math::Rgb,
-    path::{Edge, Step, Vertex},
+    path::{Edge, ROULETTE_DEPTH, Step, Vertex},
     sampler::Sobol,
 };
 use glam::{DVec2, DVec3};
@@ -63,6 +63,8 @@ struct Walk {
     density: f64,
     /// Whether next-event estimation at `from` competes with meeting a light by chance.
     competes: bool,
+    /// Product of the albedos met so far, until roulette begins.
+    albedo: f64,
 }
 
 /// Estimates the radiance that reaches `raster` over paths of at most `max_depth` edges.
@@ -76,6 +78,7 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
         throughput: Rgb::ONE,
         density: world.camera.direction_density(ray.direction),
         competes: false,
+        albedo: 1.0,
     };
     let mut sum = Rgb::ZERO;
     for edges in 1..=max_depth {
@@ -95,7 +98,7 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
             break;
         }
         let w_e = -walk.direction;
-        let survival = here.survival(edges);
+        let survival = walk.survival(&here, edges);
         let next_event = (sampler.next_1d(), sampler.next_2d());
         if here.bsdf.has_smooth() {
             sum += walk.throughput * next_event_estimate(world, &here, w_e, survival, next_event);
@@ -111,6 +114,15 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
 }
 
 impl Walk {
+    /// Probability of surviving Russian roulette at `here`: first the albedo of the whole walk, later that of the surface
+    /// alone, which keeps throughputs near 1. A function of the places visited, whatever light was found.
+    fn survival(&mut self, here: &Vertex, edges: usize) -> f64 {
+        if edges <= ROULETTE_DEPTH {
+            self.albedo *= here.bsdf.albedo_bound();
+        }
+        if edges == ROULETTE_DEPTH { self.albedo.clamp(0.05, 0.95) } else { here.survival(edges) }
+    }
+
     fn go_on(&mut self, mut from: Vertex, step: &Step, survival: f64) {
         from.mode = step.mode;
         self.origin = from.leave(step.direction);

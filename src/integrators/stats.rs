@@ -50,7 +50,8 @@ fn smooth(values: &[f64], width: usize, height: usize) -> Vec<f64> {
         .map(|i| {
             let (columns, rows) = (span(i % width, width), span(i / width, height));
             let count = columns.len() * rows.len();
-            let sum: f64 = rows.flat_map(|y| &values[y * width + columns.start..y * width + columns.end]).sum();
+            let sum: f64 =
+                rows.flat_map(|y| &values[y * width + columns.start..y * width + columns.end]).sum();
             sum / count as f64
         })
         .collect()
@@ -104,7 +105,8 @@ mod tests {
 
     #[test]
     fn the_worst_tile_shows() {
-        let found = noise(&film(64, |p| if p % 130 >= 64 { 1.0 } else { 0.1 }), WINDOW).expect("enough rounds");
+        let found =
+            noise(&film(64, |p| if p % 130 >= 64 { 1.0 } else { 0.1 }), WINDOW).expect("enough rounds");
         assert!(found.worst_tile / (1.0 / 2.0 / 8.0) > 0.9, "{found:?}");
     }
 

@@ -139,7 +139,7 @@ impl Camera {
     pub fn connect(&self, p: DVec3, lens: [f64; 2]) -> Option<Connection> {
         let local = self.frame.to_local(p - self.origin);
         let depth = -local.z;
-        if !(depth > 0.0) {
+        if depth <= 0.0 || depth.is_nan() {
             return None;
         }
         let (from, image) = match self.lens {

@@ -61,7 +61,8 @@ impl Material {
 
     /// What the emission texture, if any, multiplies.
     pub fn emission_factor(&self) -> Rgb {
-        let factor = if self.source.unlit { self.source.base_color.value } else { self.source.emission.value };
+        let factor =
+            if self.source.unlit { self.source.base_color.value } else { self.source.emission.value };
         factor.as_dvec3()
     }
 

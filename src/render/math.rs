@@ -33,7 +33,7 @@ impl Frame {
     pub fn from_zx(z: DVec3, x: DVec3) -> Self {
         let tangent = x - z * z.dot(x);
         let length = tangent.length();
-        if !(length > 1e-9 * x.length()) {
+        if length <= 1e-9 * x.length() || length.is_nan() {
             return Self::from_z(z);
         }
         let x = tangent / length;
@@ -69,7 +69,9 @@ mod tests {
     #[test]
     fn frames_are_orthonormal_and_right_handed() {
         for z in [DVec3::Z, -DVec3::Z, DVec3::X, DVec3::new(1.0, -2.0, -0.3).normalize()] {
-            for frame in [Frame::from_z(z), Frame::from_zx(z, DVec3::new(0.3, 0.2, 0.9)), Frame::from_zx(z, z)] {
+            for frame in
+                [Frame::from_z(z), Frame::from_zx(z, DVec3::new(0.3, 0.2, 0.9)), Frame::from_zx(z, z)]
+            {
                 assert!((frame.x.cross(frame.y) - frame.z).length() < 1e-14);
                 assert!((frame.x.length() - 1.0).abs() < 1e-14);
                 let w = DVec3::new(0.2, -0.5, 0.7);

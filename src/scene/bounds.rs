@@ -12,6 +12,18 @@ const YFOV: f64 = 40.0 * PI / 180.0;
 /// From the scene's centre towards that camera: in front, to the right, above.
 const VIEW: DVec3 = DVec3::new(0.6, 0.5, 1.0);
 
+/// Radiance of the default studio, cd/m².
+const STUDIO_GREY: f32 = 0.35;
+
+/// Illuminance of its key light, lux.
+const STUDIO_KEY: f32 = 2.2;
+
+/// Full angle of the key light, radians: soft shadows.
+const STUDIO_KEY_ANGLE: f32 = 0.35;
+
+/// Where the key light shines.
+const STUDIO_KEY_DIRECTION: DVec3 = DVec3::new(0.55, -0.9, -0.5);
+
 impl Scene {
     /// The smallest box along the world's axes that holds all triangles of visible meshes: lower and upper corner in
     /// metres. `None` without triangles. Vertices that are not finite or that no triangle uses do not count.
@@ -37,7 +49,8 @@ impl Scene {
         self.placed().iter().any(|placed| placed.node.camera.is_some())
     }
 
-    /// Whether there is anything to see by: a visible light, or a visible mesh whose material emits or is unlit.
+    /// Whether there is anything to see by: a visible light, or a visible mesh that emits more than 1 cd/m². Dimmer ones
+    /// are labels and displays, made for renderers whose emission lights nothing.
     pub fn has_light(&self) -> bool {
         self.placed().iter().filter(|placed| placed.visible).any(|placed| {
             let material = |mesh: &Mesh| self.materials.get(placed.node.material.or(mesh.material)?);
@@ -47,7 +60,7 @@ impl Scene {
                     .meshes
                     .iter()
                     .filter_map(|&id| material(self.meshes.get(id)?))
-                    .any(|material: &Material| material.unlit || material.emission.value.max_element() > 0.0)
+                    .any(|material: &Material| !material.unlit && material.emission.value.max_element() > 1.0)
         })
     }
 
@@ -63,16 +76,21 @@ impl Scene {
         Some(Diagnostic::note("the scene has no camera, added one that sees all of it"))
     }
 
-    /// Adds a neutral studio (a uniform environment of 1 cd/m²) unless there is light, and says so.
+    /// Adds a neutral studio unless there is light, and says so: grey surroundings, and a large soft key light from above,
+    /// left of the default camera, so that white things show their shape. A white surface that faces the key light has a
+    /// radiance near 1.
     pub fn add_default_light(&mut self) -> Option<Diagnostic> {
         if self.has_light() {
             return None;
         }
-        let name = "studio".to_owned();
-        let kind = LightKind::Environment { radiance: 1.0, texture: None };
-        let light = Some(self.lights.push(Light { name: name.clone(), color: Vec3::ONE, kind }));
-        self.add_root(Node { name, light, ..Node::default() });
-        Some(Diagnostic::note("the scene has no light, added a uniform white environment"))
+        let sky = LightKind::Environment { radiance: STUDIO_GREY, texture: None };
+        let key = LightKind::Directional { illuminance: STUDIO_KEY, angle: STUDIO_KEY_ANGLE };
+        for (name, kind) in [("studio", sky), ("studio key", key)] {
+            let light = Some(self.lights.push(Light { name: name.to_owned(), color: Vec3::ONE, kind }));
+            let transform = looking(DVec3::ZERO, STUDIO_KEY_DIRECTION, DVec3::Y);
+            self.add_root(Node { name: name.to_owned(), transform, light, ..Node::default() });
+        }
+        Some(Diagnostic::note("the scene has no light, added a grey studio with a soft key light"))
     }
 
     /// Adds a node at the top of the hierarchy.

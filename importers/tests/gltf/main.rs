@@ -1,5 +1,12 @@
 //! The glTF importer on small files made here, on real files, and on damaged ones.
 
+#![expect(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a test may panic, also in what its functions share, and says what it skips"
+)]
+
 mod assets;
 mod attributes;
 mod build;

@@ -148,7 +148,8 @@ impl<'w> Connector<'w> {
         let lens = self.world.lens_vertex(seen.lens);
         let edge = Edge { to_eye: seen.direction, length: seen.distance, falloff: 1.0 };
         let scattering = end.vertex.evaluate(end.to_previous, seen.direction);
-        let value = end.throughput * scattering.value * (end.vertex.projected(seen.direction) * seen.importance);
+        let value =
+            end.throughput * scattering.value * (end.vertex.projected(seen.direction) * seen.importance);
         let value = self.visible(value, &end.vertex, &lens, &edge);
         if value == Rgb::ZERO {
             return None;

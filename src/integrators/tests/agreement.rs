@@ -118,7 +118,11 @@ fn sun_and_sky() {
     let white = b.diffuse(Vec3::splat(0.5));
     b.mesh(shapes::sphere(Vec3::new(0.1, -0.4, 0.0), 0.3, 8, true), white);
     b.light(LightKind::Environment { radiance: 0.7, texture: None }, DVec3::ZERO, DVec3::NEG_Z);
-    b.light(LightKind::Directional { illuminance: 3.0, angle: 0.2 }, DVec3::ZERO, DVec3::new(0.2, -0.5, -0.8));
+    b.light(
+        LightKind::Directional { illuminance: 3.0, angle: 0.2 },
+        DVec3::ZERO,
+        DVec3::new(0.2, -0.5, -0.8),
+    );
     check("sun and sky", &b.world(32), 5);
 }
 

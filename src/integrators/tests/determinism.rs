@@ -12,8 +12,11 @@ use glam::{DVec3, Vec3};
 fn world() -> World {
     let mut b = Builder::default();
     let white = b.diffuse(Vec3::splat(0.7));
-    let glass =
-        b.material(Material { transmission: Input::constant(1.0), roughness: Input::constant(0.0), ..Material::default() });
+    let glass = b.material(Material {
+        transmission: Input::constant(1.0),
+        roughness: Input::constant(0.0),
+        ..Material::default()
+    });
     let lamp = b.emitter(Vec3::splat(5.0));
     b.mesh(shapes::cuboid(Vec3::splat(-1.0), Vec3::splat(1.0), true), white);
     b.mesh(shapes::sphere(Vec3::new(0.2, -0.5, -0.1), 0.4, 8, true), glass);

@@ -32,7 +32,8 @@ fn assert_mean(name: &str, integrator: &dyn Integrator, film: &ajar_render::film
 fn closed_box_that_shines() {
     let (albedo, depth) = (0.6, 7);
     let mut b = Builder::default();
-    let wall = b.material(Material { emission: Input::constant(Vec3::ONE), ..diffuse(Vec3::splat(albedo as f32)) });
+    let wall =
+        b.material(Material { emission: Input::constant(Vec3::ONE), ..diffuse(Vec3::splat(albedo as f32)) });
     b.mesh(shapes::cuboid(Vec3::splat(-1.0), Vec3::splat(1.0), true), wall);
     b.camera(pinhole(1.2), DVec3::new(0.1, -0.2, 0.3), DVec3::new(1.0, 0.4, -0.2));
     let world = b.world(16);

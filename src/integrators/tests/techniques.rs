@@ -93,7 +93,9 @@ fn all_techniques_find_the_same_light() {
         for s in 0..=k {
             let (mean, own_error) = estimate(&batches, |b| b.alone[k][s]);
             let z = (mean - reference) / error.hypot(own_error);
-            println!("k {k} s {s}: {mean:.5} ± {own_error:.5}, weighted {reference:.5} ± {error:.5}, z {z:.2}");
+            println!(
+                "k {k} s {s}: {mean:.5} ± {own_error:.5}, weighted {reference:.5} ± {error:.5}, z {z:.2}"
+            );
             // 18 techniques: 4 standard errors are met by chance once in a thousand runs.
             assert!(z.abs() < 4.0, "{k} edges, technique {s}");
             assert!(own_error < 0.1 * mean, "{k} edges, technique {s}: too noisy to tell");

@@ -1,7 +1,6 @@
 //! The wide tree: its nodes, and the walk of a ray through them.
 //!
-//! Boxes are stored as one array per side so that a ray meets all children of a node at once. The loops over
-//! `[f32; WIDTH]` are written for the compiler's vectorizer.
+//! Boxes are stored as one array per side, so that a ray meets all children of a node at once.
 
 use super::lanes::Eight;
 use super::stack::Space;

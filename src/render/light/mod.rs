@@ -72,14 +72,15 @@ impl Lights {
         (centre, radius): (DVec3, f64),
     ) -> Self {
         let disc = std::f64::consts::PI * radius * radius;
-        let powers: Vec<f64> = dirac
-            .iter()
-            .map(|light| light.power(disc))
-            .chain(environment.iter().map(|e| e.power() * disc))
-            .chain(triangles.iter().map(|t| {
-                std::f64::consts::PI * t.brightness * t.area * if t.both_sides { 2.0 } else { 1.0 }
-            }))
-            .collect();
+        let powers: Vec<f64> =
+            dirac
+                .iter()
+                .map(|light| light.power(disc))
+                .chain(environment.iter().map(|e| e.power() * disc))
+                .chain(triangles.iter().map(|t| {
+                    std::f64::consts::PI * t.brightness * t.area * if t.both_sides { 2.0 } else { 1.0 }
+                }))
+                .collect();
         Self { dirac, environment, triangles, choice: Discrete::new(&powers), centre, radius }
     }
 

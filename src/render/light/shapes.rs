@@ -92,12 +92,7 @@ fn cylinder(radius: f32, length: f32) -> Mesh {
         triangles.push([a, b, b + AROUND]);
     }
     let round = Vec3::new(0.0, 1.0, 1.0);
-    scaled_to_area(
-        Mesh { positions, triangles, ..Mesh::default() },
-        radius,
-        TAU * f64::from(length),
-        round,
-    )
+    scaled_to_area(Mesh { positions, triangles, ..Mesh::default() }, radius, TAU * f64::from(length), round)
 }
 
 /// Scales a shape of unit radius along the axes `round` to `radius`, such that at radius 1 its area would be `area`.

@@ -93,11 +93,9 @@ fn used_textures(scene: &Scene) -> BTreeSet<Id<ajar_scene::Texture>> {
     for placed in scene.placed().into_iter().filter(|placed| placed.visible) {
         let meshes = placed.node.meshes.iter().filter_map(|&id| scene.meshes.get(id));
         materials.extend(meshes.filter_map(|mesh| placed.node.material.or(mesh.material)));
-        match placed.node.light.and_then(|id| scene.lights.get(id)).map(|light| &light.kind) {
-            Some(LightKind::Rect { texture, .. } | LightKind::Environment { texture, .. }) => {
-                used.extend(*texture)
-            }
-            _ => {}
+        let light = placed.node.light.and_then(|id| scene.lights.get(id)).map(|light| &light.kind);
+        if let Some(LightKind::Rect { texture, .. } | LightKind::Environment { texture, .. }) = light {
+            used.extend(*texture);
         }
     }
     for material in materials.into_iter().filter_map(|id| scene.materials.get(id)) {

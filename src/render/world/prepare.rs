@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use ajar_scene::{Camera, Diagnostic, Id, Input, Light, LightKind, Material, Mesh, Scene, Severity, TextureInput};
+use ajar_scene::{
+    Camera, Diagnostic, Id, Input, Light, LightKind, Material, Mesh, Scene, Severity, TextureInput,
+};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -128,7 +130,7 @@ fn instances(scene: &Scene, default_material: Id<Material>) -> Vec<Instance> {
     let mut found = Vec::new();
     for placed in scene.placed().into_iter().filter(|p| p.visible) {
         for &mesh in &placed.node.meshes {
-            let linear = DMat3::from(placed.world.matrix3);
+            let linear = placed.world.matrix3;
             let determinant = linear.determinant();
             if determinant == 0.0 || scene.meshes[mesh].triangles.is_empty() {
                 continue;
@@ -156,7 +158,8 @@ fn build_geometry(scene: &Scene, instances: &[Instance]) -> Geometry {
         .iter()
         .zip(used)
         .map(|(mesh, used)| {
-            let geometry = MeshGeometry { positions: mesh.positions.clone(), triangles: mesh.triangles.clone() };
+            let geometry =
+                MeshGeometry { positions: mesh.positions.clone(), triangles: mesh.triangles.clone() };
             Arc::new(if used { geometry } else { MeshGeometry::default() })
         })
         .collect();
@@ -273,15 +276,8 @@ fn rotation(map: &DAffine3) -> DMat3 {
 }
 
 /// Barycentric points at which the emission of a triangle is averaged.
-const EMISSION_PROBES: [[f64; 2]; 7] = [
-    [1.0 / 3.0, 1.0 / 3.0],
-    [0.6, 0.2],
-    [0.2, 0.6],
-    [0.2, 0.2],
-    [0.05, 0.05],
-    [0.9, 0.05],
-    [0.05, 0.9],
-];
+const EMISSION_PROBES: [[f64; 2]; 7] =
+    [[1.0 / 3.0, 1.0 / 3.0], [0.6, 0.2], [0.2, 0.6], [0.2, 0.2], [0.05, 0.05], [0.9, 0.05], [0.05, 0.9]];
 
 fn triangle_light(world: &World, instance: u32, triangle: u32) -> TriangleLight {
     let placed = &world.instances[instance as usize];

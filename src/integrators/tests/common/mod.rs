@@ -5,7 +5,11 @@ pub mod compare;
 pub mod shapes;
 
 use ajar_integrators::{Context, Integrator, Settings, Window, brightness};
-use ajar_render::{World, film::Film, world::{PrepareOptions, prepare}};
+use ajar_render::{
+    World,
+    film::Film,
+    world::{PrepareOptions, prepare},
+};
 use ajar_scene::{Camera, Id, Input, Light, LightKind, Material, Mesh, Node, Projection, Scene};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use std::sync::atomic::AtomicBool;
@@ -54,8 +58,7 @@ impl Builder {
     }
 
     pub fn camera(&mut self, projection: Projection, position: DVec3, target: DVec3) -> &mut Self {
-        let camera =
-            Camera { name: String::new(), projection, aspect: None, exposure: 1.0 };
+        let camera = Camera { name: String::new(), projection, aspect: None, exposure: 1.0 };
         self.camera = Some((self.scene.cameras.push(camera), look(position, target)));
         self
     }

@@ -149,7 +149,9 @@ fn samples_follow_their_densities() {
             None => bsdf.pdf(Side::TowardLight, known, w),
         });
         least = least.min(p);
-        if p < 0.003 { println!("LOW {} lobe {:?} from {}: p = {p}", case.0, case.3, case.2); }
+        if p < 0.003 {
+            println!("LOW {} lobe {:?} from {}: p = {p}", case.0, case.3, case.2);
+        }
         assert!(p > threshold, "{} lobe {:?} from {}: p = {p}", case.0, case.3, case.2);
     }
     println!("{} tests, least p {least:.4}, threshold {threshold:.2e}", cases.len());

@@ -75,12 +75,11 @@ fn defaults_are_added_once() {
     let camera = scene.add_default_camera(1.5).unwrap();
     assert_eq!(camera.to_string(), "note: the scene has no camera, added one that sees all of it");
     let light = scene.add_default_light().unwrap();
-    assert_eq!(light.to_string(), "note: the scene has no light, added a uniform white environment");
+    assert_eq!(light.to_string(), "note: the scene has no light, added a grey studio with a soft key light");
     assert_eq!((scene.add_default_camera(1.5), scene.add_default_light()), (None, None));
     assert!(scene.validate().is_empty(), "{:?}", scene.validate());
-    assert_eq!((scene.roots.len(), scene.cameras.len(), scene.lights.len()), (2, 1, 1));
-    let sky = LightKind::Environment { radiance: 1.0, texture: None };
-    assert_eq!(scene.lights[Id::new(0)].kind, sky);
+    assert_eq!((scene.roots.len(), scene.cameras.len(), scene.lights.len()), (3, 1, 2));
+    assert!(matches!(scene.lights[Id::new(0)].kind, LightKind::Environment { texture: None, .. }));
 }
 
 #[test]
@@ -92,10 +91,12 @@ fn light_is_what_can_be_seen() {
     scene.nodes[Id::new(1)].visible = true;
     scene.nodes[Id::new(1)].light = None;
     assert!(!scene.has_light());
-    let glow = scene.materials.push(Material { emission: Input::constant(Vec3::X), ..Material::default() });
+    let glow = scene.materials.push(Material { emission: Input::constant(2.0 * Vec3::X), ..Material::default() });
     assert!(!scene.has_light(), "materials without a mesh do not count");
     scene.nodes[Id::new(0)].material = Some(glow);
     assert!(scene.has_light());
     scene.materials[glow] = Material { unlit: true, ..Material::default() };
-    assert!(scene.has_light());
+    assert!(!scene.has_light(), "unlit things light nothing");
+    scene.materials[glow] = Material { emission: Input::constant(Vec3::X), ..Material::default() };
+    assert!(!scene.has_light(), "labels light nothing");
 }
