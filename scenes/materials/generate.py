@@ -61,17 +61,30 @@ def swatches(glb: Glb) -> list[tuple[str, int]]:
         ("Gold, worn", glb.material("Gold worn", gold, metallic=1.0, roughness=1.0, rough_map=worn)),
         (
             "Copper, brushed",
-            glb.material("Copper brushed", copper, metallic=1.0, roughness=0.38, anisotropy={"anisotropyStrength": 0.85}),
+            glb.material(
+                "Copper brushed", copper, metallic=1.0, roughness=0.38, anisotropy={"anisotropyStrength": 0.85}
+            ),
         ),
         ("Chrome", glb.material("Chrome", steel, metallic=1.0, roughness=0.0)),
-        ("Lattice", glb.material("Lattice", (0.85, 0.62, 0.15), roughness=0.35, color_map=holes, alpha="MASK", double_sided=True)),
+        (
+            "Lattice",
+            glb.material(
+                "Lattice", (0.85, 0.62, 0.15), roughness=0.35, color_map=holes, alpha="MASK", double_sided=True
+            ),
+        ),
         ("Lamp", glb.material("Lamp", (0.0, 0.0, 0.0), emission=(2.2, 0.95, 0.28))),
         ("Glass", glass(glb, "Glass")),
         ("Frosted glass", glass(glb, "Frosted glass", roughness=0.32)),
         ("Tinted glass", glass(glb, "Tinted glass", tint=(0.20, 0.62, 0.48), depth=0.5)),
         (
             "Bubble",
-            glb.material("Bubble", roughness=0.0, double_sided=True, transmission={"transmissionFactor": 1.0}, ior={"ior": 1.5}),
+            glb.material(
+                "Bubble",
+                roughness=0.0,
+                double_sided=True,
+                transmission={"transmissionFactor": 1.0},
+                ior={"ior": 1.5},
+            ),
         ),
         ("Wax", glb.material("Wax", (0.86, 0.80, 0.70), roughness=0.5)),
         ("Marble", glb.material("Marble", roughness=0.12, color_map=glb.texture(

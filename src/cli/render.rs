@@ -25,8 +25,9 @@ use crate::{
 const DEFAULT_SIZE: [u32; 2] = [1280, 720];
 /// Samples a pixel where no stop rule is given.
 const DEFAULT_SPP: u32 = 64;
-/// Rounds that `--spp` is spread over, where it is enough for them: their spread is the noise estimate.
-const ROUNDS_OF_SPP: u32 = 16;
+/// Fewest rounds that `--spp` is spread over, where it is enough for them: their spread is the noise estimate. Points are
+/// evenly spread within a round only, so more rounds would mean more noise.
+const ROUNDS_OF_SPP: u32 = 8;
 /// Eye samples a pixel in a round when only time, noise or rounds limit the render.
 const SAMPLES_PER_ROUND: u32 = 16;
 
@@ -232,7 +233,7 @@ fn stop_rules(args: &Args, render: &RenderSettings) -> (StopRules, u32) {
     if spp.is_none() && rounds.is_none() && time.is_none() && noise.is_none() {
         spp = Some(DEFAULT_SPP);
     }
-    let samples = spp.map_or(SAMPLES_PER_ROUND, |n| floor_power_of_two(n / ROUNDS_OF_SPP).min(64));
+    let samples = spp.map_or(SAMPLES_PER_ROUND, |n| floor_power_of_two(n / ROUNDS_OF_SPP).min(256));
     let by_spp = spp.map(|n| u64::from(n.div_ceil(samples)));
     let rounds = [rounds, by_spp].into_iter().flatten().min();
     (StopRules { rounds, time, noise }, samples)

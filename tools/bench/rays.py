@@ -60,7 +60,7 @@ def main(example, turns=3):
             if fastest is None:
                 fastest = np.full(len(origins) // BATCH, np.inf)
                 scene = EmbreeScene(robust=True)
-                mesh = TriangleMesh(scene, corners)
+                _mesh = TriangleMesh(scene, corners)
                 scene.run(origins[:1], directions[:1])  # builds the tree
             for _ in range(PASSES):
                 passes(scene, origins, directions, fastest)
