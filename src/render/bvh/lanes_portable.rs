@@ -62,10 +62,6 @@ impl Four {
         Self(*x)
     }
 
-    pub(in crate::bvh) fn splat(x: f32) -> Self {
-        Self([x; 4])
-    }
-
     /// The lesser; `other` where either is NaN.
     pub(in crate::bvh) fn min(self, other: Self) -> Self {
         Self(from_fn(|i| min(self.0[i], other.0[i])))

@@ -33,7 +33,7 @@ fn furnace(name: &str, sides: &[f64], with_roughness: impl Fn(f64) -> SurfacePar
         let bsdf = Bsdf::new(&with_roughness(roughness));
         for cos in COSINES {
             for side in sides {
-                let a = albedo(&bsdf, at(cos * side, 0.3), 56).x;
+                let a = albedo(&bsdf, at(cos * side, 0.3), 72).x;
                 assert!((a - 1.0).abs() < 0.005, "{name} roughness {roughness} cos {}: {a}", cos * side);
                 worst = worst.max((a - 1.0).abs());
             }

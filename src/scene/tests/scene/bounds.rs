@@ -91,7 +91,8 @@ fn light_is_what_can_be_seen() {
     scene.nodes[Id::new(1)].visible = true;
     scene.nodes[Id::new(1)].light = None;
     assert!(!scene.has_light());
-    let glow = scene.materials.push(Material { emission: Input::constant(2.0 * Vec3::X), ..Material::default() });
+    let glow =
+        scene.materials.push(Material { emission: Input::constant(2.0 * Vec3::X), ..Material::default() });
     assert!(!scene.has_light(), "materials without a mesh do not count");
     scene.nodes[Id::new(0)].material = Some(glow);
     assert!(scene.has_light());
