@@ -75,7 +75,8 @@ pub(super) struct Args {
     /// Render only these pixels, the second bounds excluded: x0,x1,y0,y1
     #[arg(long, value_name = "X0,X1,Y0,Y1", value_parser = parse_bounds)]
     pixel_bounds: Option<[u32; 4]>,
-    /// Layers to add: albedo,normal,geometric_normal,depth,position,uv,material_id,object_id,variance
+    /// Layers to add, with commas between: albedo, normal, geometric_normal, depth, position, uv, material_id, object_id,
+    /// variance
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     aov: Option<Vec<String>>,
     /// Tone map of the PNG: agx, aces, neutral or srgb

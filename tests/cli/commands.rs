@@ -43,7 +43,7 @@ fn inspect_counts_what_is_there() {
     {
         assert_eq!(counts[key], count, "{key} in {counts}");
     }
-    assert_eq!((&counts["cameras"], &counts["lights"]), (&1.into(), &1.into()), "those that were added");
+    assert_eq!((&counts["cameras"], &counts["lights"]), (&1.into(), &2.into()), "those that were added");
     assert_eq!(json["bounds"]["size"], serde_json::json!([1.0, 1.0, 0.0]));
     assert_eq!(json["nodes"][0]["name"], "leaf");
     assert_eq!(json["materials"][0]["name"], "clay");

@@ -1,6 +1,6 @@
 """OpenImageIO, which shares no code with the writer, reads what `ajar render` wrote.
 
-The scene is the Cornell box: its camera stands at (0, 1, 4.8) and looks along -Z with a vertical angle of 30.5 degrees.
+The scene is the Cornell box: its camera stands at (0, 1, 4.8) and looks along -Z with a vertical angle of 29.6 degrees.
 """
 
 import math
@@ -14,7 +14,7 @@ import OpenImageIO as oiio
 import pytest
 
 SCENE = Path(__file__).parents[2] / "scenes" / "cornell" / "scene.toml"
-HALF_EXTENT = 4.8 * math.tan(math.radians(30.5) / 2)
+HALF_EXTENT = 4.8 * math.tan(math.radians(29.6) / 2)
 
 
 def render(target: Path, *arguments: str) -> Path:

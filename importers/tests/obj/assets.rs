@@ -92,7 +92,7 @@ fn malformed_real_files() {
     let path = assets.join("malformed/obj_invalid-face-definition/invalid-face-definition.obj");
     let said = warnings(&Obj.import(&ImportRequest::new(path)).unwrap());
     assert!(
-        said.contains(&"faces with fewer than three corners are dropped (and at 1 more places)".to_owned()),
+        said.contains(&"faces with fewer than three corners are dropped (and at 1 more place)".to_owned()),
         "{said:?}"
     );
 }

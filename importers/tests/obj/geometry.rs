@@ -113,7 +113,7 @@ fn what_is_dropped_is_said_once() {
         warnings(&imported),
         [
             "numbers after the coordinates of a vertex are neither w = 1 nor r g b; dropped",
-            "lines are dropped (`l`) (and at 1 more places)",
+            "lines are dropped (`l`) (and at 1 more place)",
             "points are dropped (`p`)",
             "faces with fewer than three corners are dropped",
             "statement \"bevel\" is not supported and dropped",

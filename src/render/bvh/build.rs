@@ -3,12 +3,13 @@
 //! dynamic programme of Ylitie, Karras & Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed
 //! Wide BVHs", section 3.1.
 
+use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-use super::tree::{Node, Tree, WIDTH};
+use super::tree::{Node, PADDING, Tree, WIDTH};
 
 /// What leaves may hold and cost.
 #[derive(Clone, Copy)]
@@ -32,6 +33,8 @@ pub(super) fn build(boxes: &[Aabb], leaves: Leaves, emit: impl FnMut(&[u32]) -> 
 }
 
 fn binary_tree(boxes: &[Aabb]) -> Bvh2 {
+    let boxes: Vec<Aabb> = boxes.iter().enumerate().map(|(i, b)| distinct(b, i as u32)).collect();
+    let boxes = &boxes;
     let indices = (0..boxes.len() as u32).collect();
     let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
         PlocSearchDistance::Medium,
@@ -42,6 +45,18 @@ fn binary_tree(boxes: &[Aabb]) -> Bvh2 {
     );
     ReinsertionOptimizer::default().run(&mut tree, 0.1, None);
     tree
+}
+
+/// The box, a little larger in a way of its own: among coincident boxes, PLOC would find one pair of nearest neighbours
+/// a pass and take quadratic time.
+fn distinct(b: &Aabb, index: u32) -> Aabb {
+    let grow = PADDING * b.min.abs().max(b.max.abs()).max_element();
+    let part = |salt: u32| {
+        let mut h = (index ^ salt.wrapping_mul(0x9E37_79B9)).wrapping_mul(0x85EB_CA6B);
+        h = (h ^ (h >> 13)).wrapping_mul(0xC2B2_AE35);
+        grow * ((h >> 16) as f32 / 65536.0)
+    };
+    Aabb::new(b.min - Vec3A::new(part(1), part(2), part(3)), b.max + Vec3A::new(part(4), part(5), part(6)))
 }
 
 /// For a subtree: its boxes, and the least cost of showing it as at most 1, 2, … `WIDTH` - 1 places of a wide node.

@@ -1,6 +1,10 @@
 //! Collects what is wrong with a scene file, each with line and column.
 
-use std::{cell::RefCell, ops::Range, path::Path};
+use std::{
+    cell::{Cell, RefCell},
+    ops::Range,
+    path::Path,
+};
 
 use crate::Diagnostic;
 
@@ -28,20 +32,28 @@ impl From<Diagnostic> for Complaint {
     }
 }
 
-/// The diagnostics of one file. Shared by all readers of its tables, hence the cell.
+/// Nobody reads more than this many messages about one file.
+const MOST: usize = 100;
+
+/// The diagnostics of one file. Shared by all readers of its tables, hence the cells.
 pub(super) struct Report<'a> {
     path: &'a Path,
     text: &'a str,
     found: RefCell<Vec<Diagnostic>>,
+    untold: Cell<usize>,
 }
 
 impl<'a> Report<'a> {
     pub fn new(path: &'a Path, text: &'a str) -> Self {
-        Self { path, text, found: RefCell::default() }
+        Self { path, text, found: RefCell::default(), untold: Cell::new(0) }
     }
 
     /// Adds a diagnostic about the text that starts at byte `span.start`.
     pub fn push(&self, span: &Range<usize>, diagnostic: Diagnostic) {
+        if self.is_full() {
+            self.untold.set(self.untold.get() + 1);
+            return;
+        }
         let before = self.text.get(..span.start).unwrap_or(self.text);
         let line = before.matches('\n').count() + 1;
         let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
@@ -54,10 +66,19 @@ impl<'a> Report<'a> {
         self.push(span, Diagnostic { hint: complaint.hint, ..diagnostic });
     }
 
+    /// Whether further messages are only counted.
+    pub fn is_full(&self) -> bool {
+        self.found.borrow().len() >= MOST
+    }
+
     /// All that was found, in the order of the file.
     pub fn finish(self) -> Vec<Diagnostic> {
         let mut found = self.found.into_inner();
         found.sort_by_key(|diagnostic| diagnostic.place);
+        if self.untold.get() > 0 {
+            let message = format!("there are {} more messages about this file", self.untold.get());
+            found.push(Diagnostic::error(message).in_file(self.path));
+        }
         found
     }
 }
