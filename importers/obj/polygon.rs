@@ -84,11 +84,12 @@ impl Ring {
     fn clip(mut self, out: &mut Vec<[u32; 3]>) -> bool {
         let mut left = self.points.len();
         // Quadratic time is fine for polygons that people draw; a hostile file must not get more.
-        let mut tests = (1_000_000 + 2000 * left).min(1_000_000_000);
+        let mut tests = (1_000_000 + 4000 * left).min(200_000_000);
         let (mut simple, mut i, mut tried) = (true, 1, 0);
         while left >= 3 {
             // Each round without success asks for less: an ear, a corner without area, any corner that turns left, any.
             let rounds = if tests == 0 { 3 } else { tried / left };
+            tests = tests.saturating_sub(1);
             let turn = self.turn(i);
             let fits = match rounds {
                 0 if turn > 0.0 => {
@@ -106,6 +107,7 @@ impl Ring {
                 if turn != 0.0 {
                     out.push([before, i, after]);
                 }
+                tests = tests.saturating_sub(self.reflex.len());
                 self.unlink(i);
                 if tests == 0 {
                     self.reflex.clear();
