@@ -1,7 +1,7 @@
 //! Files that are broken or mean harm: each must be refused with a message, or read with warnings, in little time and
 //! memory, and never by a panic.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a failing test panics; a skipped one says so")]
+#![allow(clippy::unwrap_used, reason = "a failing test panics; a skipped one says so")]
 
 mod corpus;
 mod damaged;
