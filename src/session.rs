@@ -135,15 +135,16 @@ pub fn render(
     let began = Instant::now();
     let mut film =
         Film::new(settings.window.pixels(), ajar_integrators::brightness(world, settings.max_depth));
+    let prepared = integrator.prepare(Context { world, settings, cancel });
     let mut status = Status { rounds: 0, samples: 0, elapsed: Duration::ZERO, noise: None };
     let reason = loop {
         let round = film.round();
         let index = film.rounds() as u32;
-        integrator.render_round(&Context { world, settings, cancel }, index, &round);
+        prepared.render(index, &round);
         if cancel.load(Ordering::Relaxed) {
             break None;
         }
-        film.merge(&round, integrator.scale(settings));
+        film.merge(&round, prepared.scale());
         status.rounds = film.rounds();
         status.samples = status.rounds * u64::from(settings.samples_per_round);
         status.elapsed = began.elapsed();

@@ -11,7 +11,7 @@ use ajar_render::{
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::{Context, Integrator};
+use crate::{Context, Integrator, Rounds};
 
 /// The path tracer: one light sample and one continuation a vertex, weighed by the balance heuristic.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,20 @@ impl Integrator for PathTracer {
         4096
     }
 
-    fn render_round(&self, cx: &Context<'_>, round: u32, film: &RoundFilm) {
+    fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a> {
+        Box::new(PathTracerRounds(cx))
+    }
+}
+
+struct PathTracerRounds<'a>(Context<'a>);
+
+impl Rounds for PathTracerRounds<'_> {
+    fn scale(&self) -> f64 {
+        1.0 / f64::from(self.0.settings.samples_per_round)
+    }
+
+    fn render(&self, round: u32, film: &RoundFilm) {
+        let cx = &self.0;
         let window = cx.settings.window;
         (window.y0..window.y1).into_par_iter().for_each(|y| {
             if cx.cancelled() {

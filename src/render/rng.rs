@@ -10,6 +10,14 @@ pub enum Purpose {
     Bidirectional = 2,
     /// Scrambles and low bits of low-discrepancy points.
     Sobol = 3,
+    /// Bidirectional samples that seed Markov chains.
+    Bootstrap = 4,
+    /// Which candidates become seeds.
+    Resampling = 5,
+    /// Markov chains.
+    Chain = 6,
+    /// Light seen directly.
+    Direct = 7,
     /// Tests.
     Test = 99,
 }

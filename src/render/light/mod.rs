@@ -99,6 +99,11 @@ impl Lights {
         !self.dirac.is_empty()
     }
 
+    /// Whether some lights have an extent, so that eye paths can meet them.
+    pub fn can_be_met(&self) -> bool {
+        self.len() > self.dirac.len()
+    }
+
     /// The surroundings.
     pub fn environment(&self) -> Option<&Environment> {
         self.environment.as_ref()

@@ -51,7 +51,7 @@ impl Vertex {
     }
 
     fn dirac_scatter(&self, side: Side, known: DVec3, mode: Mode) -> Option<Step> {
-        let DiracStep { direction, factor, density } = self.dirac_step(side, known, mode)?;
+        let DiracStep { direction, factor, density, .. } = self.dirac_step(side, known, mode)?;
         let back = self.dirac_step(side.other(), direction, mode).map_or(0.0, |reverse| reverse.density);
         Some(Step { direction, weight: factor / density, density, back, mode })
     }

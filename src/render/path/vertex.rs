@@ -69,6 +69,8 @@ pub struct DiracStep {
     pub factor: Rgb,
     /// Density of the step in the walk's direction, in the same convention.
     pub density: f64,
+    /// The part of the density that is the probability of choosing this event.
+    pub probability: f64,
 }
 
 impl Vertex {
@@ -140,6 +142,11 @@ impl Vertex {
             Side::TowardLight => event.probability * event.eta_scale * stretch,
             Side::TowardEye => event.probability,
         };
-        (density > 0.0).then(|| DiracStep { direction, factor: event.reflectance * stretch, density })
+        (density > 0.0).then(|| DiracStep {
+            direction,
+            factor: event.reflectance * stretch,
+            density,
+            probability: event.probability,
+        })
     }
 }

@@ -34,6 +34,12 @@ impl World {
     /// Share of light that crosses the edge: 1 or 0, or the product of what partial opacities let through, times
     /// absorption.
     pub fn transmittance(&self, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
+        let passed = self.passed(light, eye);
+        if passed > 0.0 { self.absorption(light, eye, edge) * passed } else { Rgb::ZERO }
+    }
+
+    /// Share of light that surfaces on the way let through: 1 or 0, or the product of what partial opacities leave.
+    pub fn passed(&self, light: &Vertex, eye: &Vertex) -> f64 {
         let from_lens = eye.kind == Kind::Lens;
         let ray = if light.infinite() {
             Ray::new(eye.leave(light.p), light.p)
@@ -52,7 +58,7 @@ impl World {
         } else {
             self.geometry.occluded(&ray, |_| true)
         };
-        if blocked { Rgb::ZERO } else { self.absorption(light, eye, edge) * passed.get() }
+        if blocked { 0.0 } else { passed.get() }
     }
 
     /// Share of light that the medium along the edge leaves. The medium is that of the light end if the edge leaves it
