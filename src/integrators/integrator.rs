@@ -19,6 +19,14 @@ pub struct Settings {
     pub window: Window,
 }
 
+impl Settings {
+    /// Numbers of the samples that a pixel gets in `round`: rounds go on where the one before ends.
+    pub fn samples(&self, round: u32) -> std::ops::Range<u64> {
+        let (round, samples) = (u64::from(round), u64::from(self.samples_per_round));
+        round * samples..(round + 1) * samples
+    }
+}
+
 /// A rectangle of pixels, the end excluded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {

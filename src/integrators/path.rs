@@ -6,7 +6,7 @@ use ajar_render::{
     film::RoundFilm,
     math::Rgb,
     path::{Edge, ROULETTE_DEPTH, Step, Vertex},
-    sampler::Sobol,
+    sampler::{Sequence, Sobol},
 };
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -51,9 +51,10 @@ impl Rounds for PathTracerRounds<'_> {
             }
             for x in window.x0..window.x1 {
                 let pixel = u64::from(y) * u64::from(cx.world.camera.width) + u64::from(x);
+                let sequence = Sequence::new(cx.settings.seed, 0, pixel);
                 let mut sum = Rgb::ZERO;
-                for sample in 0..cx.settings.samples_per_round {
-                    let mut sampler = Sobol::new(cx.settings.seed, round, pixel, sample);
+                for sample in cx.settings.samples(round) {
+                    let mut sampler = sequence.sample(sample);
                     let [dx, dy] = sampler.next_2d();
                     let raster = DVec2::new(f64::from(x) + dx, f64::from(y) + dy);
                     sum += radiance(cx.world, cx.settings.max_depth, raster, &mut sampler);
@@ -112,13 +113,14 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
         }
         let w_e = -walk.direction;
         let survival = walk.survival(&here, edges);
-        let next_event = (sampler.next_1d(), sampler.next_2d());
+        let [u, v, choice, u_survival] = sampler.next_4d();
+        let next_event = (choice, [u, v]);
         if here.bsdf.has_smooth() {
             sum += walk.throughput * next_event_estimate(world, &here, w_e, survival, next_event);
         }
-        let (u_lobe, u) = (sampler.next_1d(), sampler.next_2d());
-        let Some(step) = here.scatter(Side::TowardLight, w_e, u_lobe, u) else { break };
-        if survival < 1.0 && sampler.next_1d() >= survival {
+        let [u, v, u_lobe, _] = sampler.next_4d();
+        let Some(step) = here.scatter(Side::TowardLight, w_e, u_lobe, [u, v]) else { break };
+        if u_survival >= survival {
             break;
         }
         walk.go_on(here, &step, survival);

@@ -12,7 +12,7 @@ use ajar_render::{
     math::Rgb,
     path::{Stop, Subpath, Vertex},
     rng::{Purpose, Rng},
-    sampler::Sobol,
+    sampler::Sequence,
 };
 use glam::DVec2;
 use rayon::prelude::*;
@@ -59,12 +59,13 @@ impl Rounds for BdptRounds<'_> {
                     return;
                 }
                 let pixel = u64::from(y) * u64::from(camera.width) + u64::from(x);
+                let sequence = Sequence::new(cx.settings.seed, 0, pixel);
                 let mut sum = Rgb::ZERO;
-                for sample in 0..cx.settings.samples_per_round {
-                    let mut sobol = Sobol::new(cx.settings.seed, round, pixel, sample);
+                for (number, sample) in cx.settings.samples(round).enumerate() {
+                    let mut sobol = sequence.sample(sample);
                     let [dx, dy] = sobol.next_2d();
                     let raster = DVec2::new(f64::from(x) + dx, f64::from(y) + dy);
-                    let index = pixel * u64::from(cx.settings.samples_per_round) + u64::from(sample);
+                    let index = pixel * u64::from(cx.settings.samples_per_round) + number as u64;
                     let mut rng = Rng::new(cx.settings.seed, Purpose::Bidirectional, round, index);
                     tracer.sample(raster, sobol.next_2d(), &mut rng, |found| {
                         if found.t > 1 {
