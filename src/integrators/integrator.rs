@@ -4,7 +4,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use ajar_render::{World, film::RoundFilm};
 
-use crate::{bdpt::Bdpt, mlt::Mlt, path::PathTracer};
+use crate::{
+    bdpt::Bdpt,
+    mlt::{Ajar, Mlt},
+    path::PathTracer,
+};
 
 /// Everything an image depends on besides the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,5 +128,5 @@ pub struct Report {
 
 /// All integrators.
 pub fn integrators() -> &'static [&'static dyn Integrator] {
-    &[&PathTracer, &Bdpt, &Mlt]
+    &[&Ajar { always: false }, &PathTracer, &Bdpt, &Mlt]
 }

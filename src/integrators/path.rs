@@ -81,8 +81,51 @@ struct Walk {
     albedo: f64,
 }
 
+/// Watches a walk of the path tracer.
+pub trait Visitor {
+    /// The walk goes on from `vertex`, the lens first; its mode is set.
+    fn leave(&mut self, _vertex: &Vertex) {}
+
+    /// A path that carries light is complete.
+    fn found(&mut self, path: &Found<'_>);
+}
+
+/// A complete path of the path tracer: the vertices that its walk left, and these.
+#[derive(Clone, Copy)]
+pub struct Found<'a> {
+    /// f over the density of both ways in which the path tracer makes the path, met and sampled lights.
+    pub value: Rgb,
+    /// Edges.
+    pub edges: usize,
+    /// The light end.
+    pub x0: &'a Vertex,
+    /// The vertex that saw it by next-event estimation; `None` if the walk met it.
+    pub seen_from: Option<&'a Vertex>,
+}
+
+struct Sum(Rgb);
+
+impl Visitor for Sum {
+    fn found(&mut self, path: &Found<'_>) {
+        self.0 += path.value;
+    }
+}
+
 /// Estimates the radiance that reaches `raster` over paths of at most `max_depth` edges.
 pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut Sobol) -> Rgb {
+    let mut sum = Sum(Rgb::ZERO);
+    walk(world, max_depth, raster, sampler, &mut sum);
+    sum.0
+}
+
+/// Walks from the lens; every contribution to the radiance at `raster` goes to `visitor`. Returns the lens point.
+pub fn walk(
+    world: &World,
+    max_depth: usize,
+    raster: DVec2,
+    sampler: &mut Sobol,
+    visitor: &mut impl Visitor,
+) -> [f64; 2] {
     let lens = sampler.next_2d();
     let ray = world.camera.ray(raster, lens);
     let mut walk = Walk {
@@ -94,19 +137,19 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
         competes: false,
         albedo: 1.0,
     };
-    let mut sum = Rgb::ZERO;
+    visitor.leave(&walk.from);
     for edges in 1..=max_depth {
         let seed = if world.has_alpha() { (sampler.next_1d() * 4_294_967_296.0) as u32 } else { 0 };
         let Some(here) = world.trace(walk.origin, walk.direction, edges == 1, seed) else {
             if let Some(sky) = world.lights.surroundings(walk.direction) {
-                sum += walk.throughput * met_light(world, &sky, &walk);
+                met_light(world, &sky, &walk, edges, visitor);
             }
             break;
         };
         let Some(edge) = Edge::between(&here, &walk.from, world.shortest_edge) else { break };
         walk.throughput *= world.absorption(&here, &walk.from, &edge);
         if here.emitter != Vertex::NO_EMITTER {
-            sum += walk.throughput * met_light(world, &here, &walk);
+            met_light(world, &here, &walk, edges, visitor);
         }
         if edges == max_depth {
             break;
@@ -116,7 +159,8 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
         let [u, v, choice, u_survival] = sampler.next_4d();
         let next_event = (choice, [u, v]);
         if here.bsdf.has_smooth() {
-            sum += walk.throughput * next_event_estimate(world, &here, w_e, survival, next_event);
+            let limit = Limit { edges: edges + 1, survival };
+            next_event_estimate(world, &here, &walk, limit, next_event, visitor);
         }
         let [u, v, u_lobe, _] = sampler.next_4d();
         let Some(step) = here.scatter(Side::TowardLight, w_e, u_lobe, [u, v]) else { break };
@@ -124,8 +168,9 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
             break;
         }
         walk.go_on(here, &step, survival);
+        visitor.leave(&walk.from);
     }
-    sum
+    lens
 }
 
 impl Walk {
@@ -149,37 +194,54 @@ impl Walk {
     }
 }
 
-/// Radiance of a light that the walk met by chance, weighed against next-event estimation.
-fn met_light(world: &World, x0: &Vertex, walk: &Walk) -> Rgb {
-    let radiance = world.emitted(x0, -walk.direction);
-    if !walk.competes || radiance == Rgb::ZERO {
-        return radiance;
+/// A light that the walk met by chance, weighed against next-event estimation.
+fn met_light(world: &World, x0: &Vertex, walk: &Walk, edges: usize, visitor: &mut impl Visitor) {
+    let mut value = walk.throughput * world.emitted(x0, -walk.direction);
+    if value == Rgb::ZERO {
+        return;
     }
-    let Some(edge) = Edge::between(x0, &walk.from, world.shortest_edge) else { return Rgb::ZERO };
-    let met = edge.density(walk.density, &walk.from, x0, false);
-    radiance * (met / (met + world.lights.density(x0)))
+    if walk.competes {
+        let Some(edge) = Edge::between(x0, &walk.from, world.shortest_edge) else { return };
+        let met = edge.density(walk.density, &walk.from, x0, false);
+        let hidden = if world.has_alpha() { world.coverage(x0) * world.passed(x0, &walk.from) } else { 1.0 };
+        // Where next-event estimation sees the light half covered it is half as good.
+        value *= met * hidden / (met * hidden + world.lights.density(x0));
+    }
+    visitor.found(&Found { value, edges, x0, seen_from: None });
+}
+
+/// Edges of the paths that end at a vertex, and the probability that the walk goes on from it.
+#[derive(Clone, Copy)]
+struct Limit {
+    edges: usize,
+    survival: f64,
 }
 
 /// One light sample for `here`, weighed against meeting the same light by chance.
 fn next_event_estimate(
     world: &World,
     here: &Vertex,
-    w_e: DVec3,
-    survival: f64,
+    walk: &Walk,
+    Limit { edges, survival }: Limit,
     (choice, u): (f64, [f64; 2]),
-) -> Rgb {
-    let Some((x0, density)) = world.lights.sample(choice, u) else { return Rgb::ZERO };
-    let Some(edge) = Edge::between(&x0, here, world.shortest_edge) else { return Rgb::ZERO };
+    visitor: &mut impl Visitor,
+) {
+    let Some((x0, density)) = world.lights.sample(choice, u) else { return };
+    let Some(edge) = Edge::between(&x0, here, world.shortest_edge) else { return };
     let geometry = x0.projected(edge.to_eye) * here.projected(edge.to_eye) * edge.falloff;
-    let scattering = here.evaluate(-edge.to_eye, w_e);
+    let scattering = here.evaluate(-edge.to_eye, -walk.direction);
     let value = scattering.value * world.emitted(&x0, edge.to_eye) * (geometry / density);
     if value == Rgb::ZERO {
-        return value;
+        return;
     }
-    let value = value * world.transmittance(&x0, here, &edge);
-    if value == Rgb::ZERO || !x0.can_be_met() {
-        return value * world.coverage(&x0);
+    let hidden = world.passed(&x0, here) * world.coverage(&x0);
+    if hidden <= 0.0 {
+        return;
     }
-    let met = edge.density(scattering.toward_light * survival, here, &x0, false);
-    value * (world.coverage(&x0) * density / (density + met))
+    let mut value = walk.throughput * value * world.absorption(&x0, here, &edge) * hidden;
+    if x0.can_be_met() {
+        let met = edge.density(scattering.toward_light * survival, here, &x0, false);
+        value *= density / (density + met * hidden);
+    }
+    visitor.found(&Found { value, edges, x0: &x0, seen_from: Some(here) });
 }

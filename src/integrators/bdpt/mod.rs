@@ -10,7 +10,7 @@ use ajar_render::{
     bsdf::Mode,
     film::RoundFilm,
     math::Rgb,
-    path::{Stop, Subpath, Vertex},
+    path::{Kind, Stop, Subpath, Vertex},
     rng::{Purpose, Rng},
     sampler::Sequence,
 };
@@ -160,6 +160,20 @@ pub struct Found<'a> {
 }
 
 impl Found<'_> {
+    /// What x_0 is.
+    pub fn light_kind(&self) -> Kind {
+        match self.end.filter(|_| self.s == 1) {
+            Some(light) => light.kind,
+            None if self.s == 0 => self.eye.stops[self.t - 1].vertex.kind,
+            None => self.light.stops[0].vertex.kind,
+        }
+    }
+
+    /// Whether x_1 scatters smoothly in this path.
+    pub fn second_is_connectable(&self) -> bool {
+        self.s < 3 || self.light.stops[1].vertex.connectable()
+    }
+
     /// Hands the path's vertices, light to eye, to `push`.
     pub fn vertices(&self, mut push: impl FnMut(Vertex)) {
         let smooth = |vertex: &Vertex| Vertex { mode: Mode::Smooth, ..*vertex };

@@ -30,6 +30,11 @@ pub fn class(x: &Path) -> usize {
     (chains.min(2) * 2 + usize::from(pair)) * 4 + length
 }
 
+/// Whether paths of a class have two neighbours that can be connected.
+pub fn has_pair(class: usize) -> bool {
+    class / 4 % 2 == 1
+}
+
 /// Most mutations in a table.
 pub const MAX_MUTATIONS: usize = 12;
 

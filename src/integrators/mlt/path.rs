@@ -72,6 +72,8 @@ pub struct Node {
     pub passed: f64,
     /// What the medium along the edge lets through.
     pub absorption: Rgb,
+    /// Albedo that Russian roulette of the path tracer sees.
+    pub albedo: f64,
 }
 
 impl Node {
@@ -88,6 +90,7 @@ impl Node {
             geometry: 1.0,
             passed: 1.0,
             absorption: Rgb::ONE,
+            albedo: vertex.bsdf.albedo_bound(),
         }
     }
 }

@@ -5,6 +5,7 @@
 
 use ajar_render::{
     math::scalar,
+    path::Kind,
     rng::{Purpose, Rng},
 };
 use rayon::prelude::*;
@@ -21,6 +22,8 @@ pub struct Candidate {
     technique: [u8; 2],
     /// Place in the order in which seeds are spread.
     order: u64,
+    /// Pixel of the window.
+    pub pixel: u32,
     /// f*/p times the weight of its technique.
     pub weight: f64,
 }
@@ -49,6 +52,11 @@ impl<'w> Bootstrap<'w> {
 
     /// All candidates, in the order of the samples.
     pub fn candidates(&self) -> Vec<Candidate> {
+        self.candidates_where(|_, _| true)
+    }
+
+    /// Those for which `wanted` holds, of the kind of x_0 and whether x_1 is connectable.
+    pub fn candidates_where(&self, wanted: impl Fn(Kind, bool) -> bool + Sync) -> Vec<Candidate> {
         let blocks: Vec<Vec<Candidate>> = (0..self.samples.div_ceil(BLOCK))
             .into_par_iter()
             .map_init(
@@ -56,7 +64,13 @@ impl<'w> Bootstrap<'w> {
                 |tracer, block| {
                     let mut found = Vec::new();
                     let samples = block * BLOCK..((block + 1) * BLOCK).min(self.samples);
-                    samples.for_each(|i| self.visit(tracer, i, |f| found.extend(self.candidate(i, f))));
+                    samples.for_each(|i| {
+                        self.visit(tracer, i, |f| {
+                            if wanted(f.light_kind(), f.second_is_connectable()) {
+                                found.extend(self.candidate(i, f));
+                            }
+                        });
+                    });
                     found
                 },
             )
@@ -65,7 +79,7 @@ impl<'w> Bootstrap<'w> {
     }
 
     /// Runs sample `index`; paths of a single edge are not for chains.
-    fn visit(&self, tracer: &mut Tracer<'w>, index: u32, mut visit: impl FnMut(&Found<'_>)) {
+    fn visit(&self, tracer: &mut Tracer<'_>, index: u32, mut visit: impl FnMut(&Found<'_>)) {
         let mut rng = Rng::new(self.seed, Purpose::Bootstrap, self.round, index.into());
         // Hammersley's points, shifted: rows evenly spread, columns by van der Corput's sequence.
         let shift = Rng::new(self.seed, Purpose::Bootstrap, self.round, u64::MAX).next_u32();
@@ -84,9 +98,10 @@ impl<'w> Bootstrap<'w> {
     fn candidate(&self, sample: u32, found: &Found<'_>) -> Option<Candidate> {
         let ratio = if found.t == 1 { self.space.film_ratio } else { 1.0 };
         let weight = scalar(found.contribution.weighted()) * ratio;
-        let on_film = self.space.pixel(found.raster).is_some();
-        (on_film && weight > 0.0 && weight.is_finite()).then(|| Candidate {
+        let pixel = self.space.pixel(found.raster)? as u32;
+        (weight > 0.0 && weight.is_finite()).then(|| Candidate {
             sample,
+            pixel,
             technique: [found.s as u8, found.t as u8],
             order: (found.s + found.t) as u64 >> 1 << 32 | u64::from(morton(found.raster)),
             weight,
@@ -94,7 +109,7 @@ impl<'w> Bootstrap<'w> {
     }
 
     /// Builds the path of a candidate into `path`; `None` if rounding lost it.
-    pub fn replay(&self, candidate: &Candidate, tracer: &mut Tracer<'w>, path: &mut Path) -> Option<()> {
+    pub fn replay(&self, candidate: &Candidate, tracer: &mut Tracer<'_>, path: &mut Path) -> Option<()> {
         let [s, t] = candidate.technique.map(usize::from);
         path.nodes.clear();
         self.visit(tracer, candidate.sample, |found| {

@@ -3,7 +3,11 @@
 
 mod common;
 
-use ajar_integrators::{bdpt::Bdpt, mlt::Mlt, path::PathTracer};
+use ajar_integrators::{
+    bdpt::Bdpt,
+    mlt::{Ajar, Mlt},
+    path::PathTracer,
+};
 use common::{
     compare::{assert_blocks_agree, assert_same},
     render, render_blocks,
@@ -27,6 +31,9 @@ fn bidirectional_path_tracing_and_metropolis_light_transport() {
         let world = (scene.world)();
         let bdpt = render_blocks(&world, &Bdpt, &settings(&world, 3, scene.depth, 16), 24);
         let mlt = render_blocks(&world, &Mlt, &settings(&world, 4, scene.depth, 64), 48);
-        assert_blocks_agree(scene.name, &bdpt, &mlt);
+        assert_blocks_agree(&format!("{}, mlt", scene.name), &bdpt, &mlt);
+        let ajar = Ajar { always: true };
+        let ajar = render_blocks(&world, &ajar, &settings(&world, 5, scene.depth, 16), 32);
+        assert_blocks_agree(&format!("{}, ajar", scene.name), &bdpt, &ajar);
     }
 }

@@ -3,16 +3,16 @@
 
 mod common;
 
-use ajar_integrators::mlt::{Mutation, plain::mutations};
+use ajar_integrators::mlt::{Mutation, mutations::mutations};
 use common::{scenes::SCENES, settings, stationarity::drift};
 
 fn check(select: impl Fn(usize) -> bool, scenes: &[usize], seeds: usize) {
-    let all = mutations();
+    let (all, _) = mutations();
     let mut failures = Vec::new();
     for &scene in scenes {
         let scene = &SCENES[scene];
         let world = (scene.world)();
-        let chosen: Vec<&dyn Mutation> = (0..all.len()).filter(|&i| select(i)).map(|i| all[i].0).collect();
+        let chosen: Vec<&dyn Mutation> = (0..all.len()).filter(|&i| select(i)).map(|i| all[i]).collect();
         for steps in [1, 8, 64] {
             let names: Vec<_> = chosen.iter().map(|m| m.name()).collect();
             let found = drift(&world, &settings(&world, 6, scene.depth, 1), &chosen, steps, seeds);
