@@ -103,6 +103,28 @@ pub fn render(
         .collect()
 }
 
+/// Mean brightness of the samples of each pixel, without light seen directly.
+pub fn means(space: &Space<'_>, settings: &Settings, round: u32) -> Vec<f64> {
+    struct Indirect(f64);
+    impl Visitor for Indirect {
+        fn found(&mut self, path: &Found<'_>) {
+            if path.edges > 1 {
+                self.0 += scalar(path.value);
+            }
+        }
+    }
+    (0..space.window.pixels())
+        .into_par_iter()
+        .map(|pixel| {
+            let mut sum = Indirect(0.0);
+            for sample in settings.samples(round) {
+                trace(space, settings.seed, pixel, sample, &mut sum);
+            }
+            sum.0 / f64::from(settings.samples_per_round)
+        })
+        .collect()
+}
+
 /// Runs one sample of a pixel. Returns raster position and lens point.
 fn trace(
     space: &Space<'_>,

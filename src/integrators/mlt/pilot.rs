@@ -15,6 +15,8 @@ use crate::{Context, Settings};
 /// Mutations a pixel that find the brightness, and then what they would cost and gain.
 const BRIGHTNESS_MUTATIONS: u64 = 12;
 const GAIN_MUTATIONS: u64 = 4;
+/// Eye paths a pixel, twice, that look for what the chains missed.
+const WALKS: u32 = 2;
 /// Round numbers of the pilots.
 const BRIGHTNESS_ROUND: u32 = u32::MAX - 1;
 const GAIN_ROUND: u32 = u32::MAX - 2;
@@ -64,12 +66,22 @@ fn brightness(chains: &PlainChains<'_>) -> Vec<f64> {
         }
     });
     film.merge(&round, 1.0);
+    let width = space.window.width() as usize;
     let found: Vec<f64> = (0..pixels).map(|pixel| scalar(film.mean(pixel))).collect();
+    let walked = [0, 1].map(|half| {
+        // Other samples than those of the image, which must not depend on its own brightness.
+        let seed = !chains.cx.settings.seed;
+        let settings = Settings { seed, samples_per_round: WALKS, ..chains.cx.settings.clone() };
+        smooth(&base::means(space, &settings, half), width)
+    });
     let mean = found.iter().sum::<f64>() / pixels as f64;
     if mean <= 0.0 {
         return vec![1.0; pixels];
     }
-    smooth(&found, space.window.width() as usize).iter().map(|b| b.max(FLOOR * mean)).collect()
+    // Chains may have missed what walks find easily. A brightness that is too low costs much, one that is too high
+    // little; what only one half of the walks found is a firefly.
+    let walked = walked[0].iter().zip(&walked[1]).map(|(a, b)| a.min(*b));
+    smooth(&found, width).iter().zip(walked).map(|(b, walked)| b.max(walked).max(FLOOR * mean)).collect()
 }
 
 /// Mean over the square of pixels around each.

@@ -21,7 +21,7 @@ use super::{
 use crate::{Context, Integrator, Report, Rounds, bdpt::MAX_VERTICES};
 
 /// Mutations for each bidirectional sample of the bootstrap, which costs some ten times as much as one.
-const MUTATIONS_PER_SAMPLE: u64 = 128;
+const MUTATIONS_PER_SAMPLE: u64 = 64;
 /// Fewest samples of a bootstrap.
 const LEAST_SAMPLES: u64 = 4096;
 
