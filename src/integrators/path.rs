@@ -55,8 +55,8 @@ impl Integrator for PathTracer {
 }
 
 /// State of a walk from the eye that is about to leave `from`.
-struct Walk {
-    from: Vertex,
+struct Walk<'v> {
+    from: &'v mut Vertex,
     origin: DVec3,
     direction: DVec3,
     throughput: Rgb,
@@ -72,8 +72,10 @@ struct Walk {
 pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut Sobol) -> Rgb {
     let lens = sampler.next_2d();
     let ray = world.camera.ray(raster, lens);
+    let (mut from, mut here) = (world.lens_vertex(ray.origin), world.lens_vertex(ray.origin));
+    let mut here = &mut here;
     let mut walk = Walk {
-        from: world.lens_vertex(ray.origin),
+        from: &mut from,
         origin: ray.origin,
         direction: ray.direction,
         throughput: Rgb::ONE,
@@ -84,26 +86,26 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
     let mut sum = Rgb::ZERO;
     for edges in 1..=max_depth {
         let seed = if world.has_alpha() { (sampler.next_1d() * 4_294_967_296.0) as u32 } else { 0 };
-        let Some(here) = world.trace(walk.origin, walk.direction, edges == 1, seed) else {
+        if !world.trace_into(walk.origin, walk.direction, edges == 1, seed, here) {
             if let Some(sky) = world.lights.surroundings(walk.direction) {
                 sum += walk.throughput * met_light(world, &sky, &walk);
             }
             break;
-        };
-        let Some(edge) = Edge::between(&here, &walk.from, world.shortest_edge) else { break };
-        walk.throughput *= world.absorption(&here, &walk.from, &edge);
+        }
+        let Some(edge) = Edge::between(here, walk.from, world.shortest_edge) else { break };
+        walk.throughput *= world.absorption(here, walk.from, &edge);
         if here.emitter != Vertex::NO_EMITTER {
-            sum += walk.throughput * met_light(world, &here, &walk);
+            sum += walk.throughput * met_light(world, here, &walk);
         }
         if edges == max_depth {
             break;
         }
         let w_e = -walk.direction;
-        let survival = walk.survival(&here, edges);
+        let survival = walk.survival(here, edges);
         let [u, v, choice, u_survival] = sampler.next_4d();
         let next_event = (choice, [u, v]);
         if here.bsdf.has_smooth() {
-            sum += walk.throughput * next_event_estimate(world, &here, w_e, survival, next_event);
+            sum += walk.throughput * next_event_estimate(world, here, w_e, survival, next_event);
         }
         let [u, v, u_lobe, _] = sampler.next_4d();
         let Some(step) = here.scatter(Side::TowardLight, w_e, u_lobe, [u, v]) else { break };
@@ -111,11 +113,12 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
             break;
         }
         walk.go_on(here, &step, survival);
+        std::mem::swap(&mut walk.from, &mut here);
     }
     sum
 }
 
-impl Walk {
+impl Walk<'_> {
     /// Probability of surviving Russian roulette at `here`: first the albedo of the whole walk, later that of the surface
     /// alone, which keeps throughputs near 1. A function of the places visited, whatever light was found.
     fn survival(&mut self, here: &Vertex, edges: usize) -> f64 {
@@ -125,25 +128,25 @@ impl Walk {
         if edges == ROULETTE_DEPTH { self.albedo.clamp(0.05, 0.95) } else { here.survival(edges) }
     }
 
-    fn go_on(&mut self, mut from: Vertex, step: &Step, survival: f64) {
+    /// Leaves `from`, which is yet to become the vertex that it is named after.
+    fn go_on(&mut self, from: &mut Vertex, step: &Step, survival: f64) {
         from.mode = step.mode;
         self.origin = from.leave(step.direction);
         self.direction = step.direction;
         self.throughput *= step.weight / survival;
         self.density = step.density * survival;
         self.competes = step.mode == Mode::Smooth;
-        self.from = from;
     }
 }
 
 /// Radiance of a light that the walk met by chance, weighed against next-event estimation.
-fn met_light(world: &World, x0: &Vertex, walk: &Walk) -> Rgb {
+fn met_light(world: &World, x0: &Vertex, walk: &Walk<'_>) -> Rgb {
     let radiance = world.emitted(x0, -walk.direction);
     if !walk.competes || radiance == Rgb::ZERO {
         return radiance;
     }
-    let Some(edge) = Edge::between(x0, &walk.from, world.shortest_edge) else { return Rgb::ZERO };
-    let met = edge.density(walk.density, &walk.from, x0, false);
+    let Some(edge) = Edge::between(x0, walk.from, world.shortest_edge) else { return Rgb::ZERO };
+    let met = edge.density(walk.density, walk.from, x0, false);
     radiance * (met / (met + world.lights.density(x0)))
 }
 
