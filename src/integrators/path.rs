@@ -68,8 +68,8 @@ impl Rounds for PathTracerRounds<'_> {
 }
 
 /// State of a walk from the eye that is about to leave `from`.
-struct Walk {
-    from: Vertex,
+struct Walk<'v> {
+    from: &'v mut Vertex,
     origin: DVec3,
     direction: DVec3,
     throughput: Rgb,
@@ -128,8 +128,10 @@ pub fn walk(
 ) -> [f64; 2] {
     let lens = sampler.next_2d();
     let ray = world.camera.ray(raster, lens);
+    let (mut from, mut here) = (world.lens_vertex(ray.origin), world.lens_vertex(ray.origin));
+    let mut here = &mut here;
     let mut walk = Walk {
-        from: world.lens_vertex(ray.origin),
+        from: &mut from,
         origin: ray.origin,
         direction: ray.direction,
         throughput: Rgb::ONE,
@@ -137,30 +139,30 @@ pub fn walk(
         competes: false,
         albedo: 1.0,
     };
-    visitor.leave(&walk.from);
+    visitor.leave(walk.from);
     for edges in 1..=max_depth {
         let seed = if world.has_alpha() { (sampler.next_1d() * 4_294_967_296.0) as u32 } else { 0 };
-        let Some(here) = world.trace(walk.origin, walk.direction, edges == 1, seed) else {
+        if !world.trace_into(walk.origin, walk.direction, edges == 1, seed, here) {
             if let Some(sky) = world.lights.surroundings(walk.direction) {
                 met_light(world, &sky, &walk, edges, visitor);
             }
             break;
-        };
-        let Some(edge) = Edge::between(&here, &walk.from, world.shortest_edge) else { break };
-        walk.throughput *= world.absorption(&here, &walk.from, &edge);
+        }
+        let Some(edge) = Edge::between(here, walk.from, world.shortest_edge) else { break };
+        walk.throughput *= world.absorption(here, walk.from, &edge);
         if here.emitter != Vertex::NO_EMITTER {
-            met_light(world, &here, &walk, edges, visitor);
+            met_light(world, here, &walk, edges, visitor);
         }
         if edges == max_depth {
             break;
         }
         let w_e = -walk.direction;
-        let survival = walk.survival(&here, edges);
+        let survival = walk.survival(here, edges);
         let [u, v, choice, u_survival] = sampler.next_4d();
         let next_event = (choice, [u, v]);
         if here.bsdf.has_smooth() {
             let limit = Limit { edges: edges + 1, survival };
-            next_event_estimate(world, &here, &walk, limit, next_event, visitor);
+            next_event_estimate(world, here, &walk, limit, next_event, visitor);
         }
         let [u, v, u_lobe, _] = sampler.next_4d();
         let Some(step) = here.scatter(Side::TowardLight, w_e, u_lobe, [u, v]) else { break };
@@ -168,12 +170,13 @@ pub fn walk(
             break;
         }
         walk.go_on(here, &step, survival);
-        visitor.leave(&walk.from);
+        std::mem::swap(&mut walk.from, &mut here);
+        visitor.leave(walk.from);
     }
     lens
 }
 
-impl Walk {
+impl Walk<'_> {
     /// Probability of surviving Russian roulette at `here`: first the albedo of the whole walk, later that of the surface
     /// alone, which keeps throughputs near 1. A function of the places visited, whatever light was found.
     fn survival(&mut self, here: &Vertex, edges: usize) -> f64 {
@@ -183,27 +186,27 @@ impl Walk {
         if edges == ROULETTE_DEPTH { self.albedo.clamp(0.05, 0.95) } else { here.survival(edges) }
     }
 
-    fn go_on(&mut self, mut from: Vertex, step: &Step, survival: f64) {
+    /// Leaves `from`, which is yet to become the vertex that it is named after.
+    fn go_on(&mut self, from: &mut Vertex, step: &Step, survival: f64) {
         from.mode = step.mode;
         self.origin = from.leave(step.direction);
         self.direction = step.direction;
         self.throughput *= step.weight / survival;
         self.density = step.density * survival;
         self.competes = step.mode == Mode::Smooth;
-        self.from = from;
     }
 }
 
 /// A light that the walk met by chance, weighed against next-event estimation.
-fn met_light(world: &World, x0: &Vertex, walk: &Walk, edges: usize, visitor: &mut impl Visitor) {
+fn met_light(world: &World, x0: &Vertex, walk: &Walk<'_>, edges: usize, visitor: &mut impl Visitor) {
     let mut value = walk.throughput * world.emitted(x0, -walk.direction);
     if value == Rgb::ZERO {
         return;
     }
     if walk.competes {
-        let Some(edge) = Edge::between(x0, &walk.from, world.shortest_edge) else { return };
-        let met = edge.density(walk.density, &walk.from, x0, false);
-        let hidden = if world.has_alpha() { world.coverage(x0) * world.passed(x0, &walk.from) } else { 1.0 };
+        let Some(edge) = Edge::between(x0, walk.from, world.shortest_edge) else { return };
+        let met = edge.density(walk.density, walk.from, x0, false);
+        let hidden = if world.has_alpha() { world.coverage(x0) * world.passed(x0, walk.from) } else { 1.0 };
         // Where next-event estimation sees the light half covered it is half as good.
         value *= met * hidden / (met * hidden + world.lights.density(x0));
     }
@@ -221,7 +224,7 @@ struct Limit {
 fn next_event_estimate(
     world: &World,
     here: &Vertex,
-    walk: &Walk,
+    walk: &Walk<'_>,
     Limit { edges, survival }: Limit,
     (choice, u): (f64, [f64; 2]),
     visitor: &mut impl Visitor,
