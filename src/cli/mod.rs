@@ -3,19 +3,17 @@
 mod arguments;
 mod exit;
 mod formats;
+mod input;
 mod inspect;
+mod job;
+mod log;
 mod progress;
 mod render;
 mod signals;
 mod validate;
 
-use std::{
-    cmp::Reverse,
-    io::{IsTerminal, Write},
-    process::ExitCode,
-};
+use std::{io::Write, process::ExitCode};
 
-use ajar_scene::{Diagnostic, Severity};
 use clap::{Parser, Subcommand};
 
 pub use exit::Exit;
@@ -31,6 +29,9 @@ const EXIT_CODES: &str = "Exit codes: 0 ok, 1 render failed, 2 usage, 3 asset or
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// How messages and progress are written
+    #[arg(long, global = true, value_name = "FORMAT", value_enum, default_value_t)]
+    log_format: log::Format,
 }
 
 #[derive(Debug, Subcommand)]
@@ -56,9 +57,9 @@ pub fn run() -> ExitCode {
         }
     };
     let exit = match cli.command {
-        Command::Render(args) => render::run(&args),
-        Command::Inspect(args) => inspect::run(&args),
-        Command::Validate(args) => validate::run(&args),
+        Command::Render(args) => render::run(&args, cli.log_format),
+        Command::Inspect(args) => inspect::run(&args, cli.log_format),
+        Command::Validate(args) => validate::run(&args, cli.log_format),
         Command::Formats(args) => formats::run(&args),
     };
     exit.into()
@@ -68,26 +69,4 @@ pub fn run() -> ExitCode {
 fn print(text: &str) {
     // Nobody reads it if the pipe is closed.
     let _ = writeln!(std::io::stdout(), "{text}");
-}
-
-/// Messages shown at most: a broken file can cause one a line.
-const MOST_MESSAGES: usize = 100;
-
-/// Prints messages for people, those of `least` severity or worse. Where there are too many, the worst are kept.
-fn print_diagnostics(diagnostics: &[Diagnostic], least: Severity) {
-    let mut shown: Vec<_> = diagnostics.iter().filter(|d| d.severity >= least).collect();
-    if shown.len() > MOST_MESSAGES {
-        shown.sort_by_key(|d| Reverse(d.severity));
-    }
-    let mut text: String = shown.iter().take(MOST_MESSAGES).map(|d| format!("{d}\n")).collect();
-    if shown.len() > MOST_MESSAGES {
-        text.push_str(&format!("… and {} more messages\n", shown.len() - MOST_MESSAGES));
-    }
-    // As above.
-    let _ = std::io::stderr().write_all(text.as_bytes());
-}
-
-/// Whether progress may redraw its line.
-fn interactive() -> bool {
-    std::io::stderr().is_terminal()
 }
