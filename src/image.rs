@@ -10,10 +10,10 @@ use ajar_integrators::{
     features::{Features, features},
 };
 use ajar_output::{
-    CameraMatrices, Channel, Layer, Metadata, OutputError, Picture, Precision, ToneMap, write_atomically,
-    write_exr, write_png,
+    BlockVariances, CameraMatrices, Channel, Layer, Metadata, OutputError, Picture, Precision, ToneMap,
+    write_atomically, write_exr, write_png,
 };
-use ajar_render::{World, math::Rgb};
+use ajar_render::{World, film::BLOCK_SIDES, math::Rgb};
 use ajar_scene::{Camera, Diagnostic};
 use glam::DAffine3;
 
@@ -218,7 +218,20 @@ fn metadata(run: &Run<'_>) -> Metadata {
         noise: status.noise.map(|n| n.typical),
         complete: run.rendered.reason.is_some(),
         shard: None,
+        block_variances: block_variances(run),
     }
+}
+
+/// Errors of areas, for those who compare images; nothing where one round says nothing about its error.
+fn block_variances(run: &Run<'_>) -> Vec<BlockVariances> {
+    let exposure = run.world.camera.exposure;
+    let sides = BLOCK_SIDES.iter().map(|side| Some(*side as u32)).chain([None]);
+    let level = |(level, side)| {
+        let variances = run.rendered.film.block_variances(level)?;
+        let stored = |v: Rgb| (v * exposure * exposure).min(Rgb::splat(f32::MAX.into())).as_vec3().to_array();
+        Some(BlockVariances { side, values: variances.into_iter().flat_map(stored).collect() })
+    };
+    sides.enumerate().filter_map(level).collect()
 }
 
 /// Writes numbers about the render as JSON.

@@ -133,8 +133,9 @@ pub fn render(
     mut each_round: impl FnMut(&Status),
 ) -> Rendered {
     let began = Instant::now();
-    let mut film =
-        Film::new(settings.window.pixels(), ajar_integrators::brightness(world, settings.max_depth));
+    let brightness = ajar_integrators::brightness(world, settings.max_depth);
+    let window = settings.window;
+    let mut film = Film::new(window.pixels(), brightness).with_blocks(window.width() as usize);
     let mut status = Status { rounds: 0, samples: 0, elapsed: Duration::ZERO, noise: None };
     let reason = loop {
         let round = film.round();
