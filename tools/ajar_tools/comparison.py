@@ -27,7 +27,7 @@ def compare_pictures(new: Picture, reference: Picture, settings: Settings) -> Ve
     Raises:
         CannotCompareError: their windows differ, or one has no colours.
     """
-    verdict = Verdict(Outcome.PASS, str(new.path), str(reference.path))
+    verdict = Verdict(Outcome.PASS, str(new.path), str(reference.path), pictures=(new, reference))
     for gate in (structure.check, finite.check, exact.check):
         result = gate(new, reference, settings)
         verdict.gates.append(result)
@@ -35,8 +35,13 @@ def compare_pictures(new: Picture, reference: Picture, settings: Settings) -> Ve
             return verdict
         if result.gate in ENDING and result.status is Status.FAIL:
             return judge(verdict, settings)
-    for gate in (statistical.check, variance.check, flip.check, numbers.check):
-        verdict.gates.append(gate(new, reference, settings))
+    verdict.flip = flip.flip_map(new, reference, settings)
+    verdict.gates += [
+        statistical.check(new, reference, settings),
+        variance.check(new, reference, settings),
+        flip.check(verdict.flip, new, reference, settings),
+        numbers.check(new, reference, settings),
+    ]
     return judge(verdict, settings)
 
 

@@ -78,11 +78,22 @@ def load(path: Path | None, base: Settings | None = None, today: datetime.date |
     base = base or Settings()
     if path is None:
         return base
+    data = parse(path)
+    # How a case is rendered is not the comparison's business: ajar_tools.cases reads it.
+    data.pop("render", None)
+    return from_dict(data, base, str(path), today or datetime.date.today())
+
+
+def parse(path: Path) -> dict[str, Any]:
+    """A TOML file.
+
+    Raises:
+        SettingsError: it cannot be read.
+    """
     try:
-        data = tomllib.loads(path.read_text("utf-8"))
+        return tomllib.loads(path.read_text("utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise SettingsError(f"{path}: {error}") from error
-    return from_dict(data, base, str(path), today or datetime.date.today())
 
 
 def from_dict(data: dict[str, Any], base: Settings, where: str, today: datetime.date) -> Settings:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ajar_tools.gates.flip import FlipMap
+    from ajar_tools.picture import Picture
 
 
 class Outcome(Enum):
@@ -47,6 +51,10 @@ class Verdict:
     """Why there is nothing to compare."""
     exceptions: list[str] = field(default_factory=list)
     """Failures that the settings excuse, in words."""
+    pictures: tuple[Picture, Picture] | None = None
+    """What was compared, for reports: the new image and the reference."""
+    flip: FlipMap | None = None
+    """The map of gate 6, if it was reached."""
 
     @property
     def failures(self) -> list[GateResult]:
@@ -70,10 +78,17 @@ class Verdict:
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
-        data = asdict(self)
-        data["outcome"] = self.outcome.name.lower()
-        data["exit_code"] = self.outcome.value
-        data["headline"] = self.headline()
-        for gate in data["gates"]:
-            gate["status"] = gate["status"].value.lower()
-        return data
+        gates = [
+            {"gate": g.gate, "status": g.status.value.lower(), "message": g.message, "numbers": g.numbers}
+            for g in self.gates
+        ]
+        return {
+            "outcome": self.outcome.name.lower(),
+            "exit_code": self.outcome.value,
+            "headline": self.headline(),
+            "new": self.new,
+            "reference": self.reference,
+            "problem": self.problem,
+            "gates": gates,
+            "exceptions": self.exceptions,
+        }

@@ -43,9 +43,8 @@ class FlipMap:
         return float(np.percentile(self.errors, 95))
 
 
-def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
+def check(found: FlipMap, new: Picture, reference: Picture, settings: Settings) -> GateResult:
     """Judges by the case's limits; by defaults where no statistics can be asked; else it reports."""
-    found = flip_map(new, reference, settings)
     numbers = {"mean": found.mean, "p95": found.p95, "averaged_over": found.factor}
     text = f"mean {found.mean:.4f}, 95th percentile {found.p95:.4f}"
     mean, p95 = settings.flip_mean, settings.flip_p95
