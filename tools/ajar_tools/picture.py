@@ -97,13 +97,13 @@ def read(path: str | Path, most_samples: int = MOST_SAMPLES) -> Picture:
     check_file(path)
     source = oiio.ImageInput.open(str(path))
     if source is None:
-        raise CannotCompareError(f"{path} cannot be read: {one_line(oiio.geterror())}")
+        raise CannotCompareError(f"{path} cannot be read: {complaint(oiio)}")
     try:
         spec = source.spec()
         check_spec(path, source, spec, most_samples)
         pixels = source.read_image(0, 0, 0, spec.nchannels, oiio.FLOAT)
         if pixels is None or source.has_error:
-            raise CannotCompareError(f"{path} is damaged: {one_line(source.geterror())}")
+            raise CannotCompareError(f"{path} is damaged: {complaint(source)}")
     finally:
         source.close()
     return Picture(
@@ -149,6 +149,10 @@ def check_spec(path: Path, source: oiio.ImageInput, spec: oiio.ImageSpec, most_s
         raise CannotCompareError(f"{path} is too large to compare: {size} are more than {most_samples:,} samples")
 
 
-def one_line(message: str) -> str:
-    """A library's message without line breaks and final full stop."""
+def complaint(source: Any) -> str:
+    """What OpenImageIO has to say, without line breaks and final full stop."""
+    try:
+        message = source.geterror()
+    except UnicodeDecodeError:  # It quotes damaged names.
+        message = "its header is damaged"
     return " ".join(message.split()).rstrip(".") or "no reason given"

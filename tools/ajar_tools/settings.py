@@ -39,7 +39,7 @@ class Settings:
     """Fewest rounds from which an image's own variances are believed."""
     variance_ratio: float = 1.25
     """The noise of the typical block may differ by this factor, beyond what chance explains, before it counts."""
-    dispersion: float = 1.25
+    dispersion: float = 1.15
     """Block differences may scatter by this factor more than the stored variances say, beyond chance."""
     max_luminance: float = 2.0
     """The luminance that fixes FLIP's range of exposures, for all images the same."""
