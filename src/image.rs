@@ -6,14 +6,18 @@ use std::{
 };
 
 use ajar_integrators::{
-    Settings,
+    Report, Settings,
     features::{Features, features},
 };
 use ajar_output::{
-    CameraMatrices, Channel, Layer, Metadata, OutputError, Picture, Precision, ToneMap, write_atomically,
-    write_exr, write_png,
+    BlockVariances, CameraMatrices, Channel, Layer, Metadata, OutputError, Picture, Precision, ToneMap,
+    write_atomically, write_exr, write_png,
 };
-use ajar_render::{World, film::Film, math::Rgb};
+use ajar_render::{
+    World,
+    film::{BLOCK_SIDES, Film},
+    math::Rgb,
+};
 use ajar_scene::{Camera, Cause, Diagnostic};
 use glam::DAffine3;
 
@@ -102,6 +106,8 @@ pub struct Run<'a> {
     pub status: &'a Status,
     /// Whether a stop rule ended the render.
     pub complete: bool,
+    /// What the integrator tells.
+    pub report: &'a Report,
     /// Hash of the scene.
     pub scene_hash: &'a str,
 }
@@ -148,6 +154,7 @@ pub fn write(run: &Run<'_>, to: &Destination) -> Result<Vec<Diagnostic>, OutputE
         notes
             .push(Diagnostic::warning(format!("{rejected} contributions were not finite and were left out")));
     }
+    notes.extend(run.report.warnings.iter().map(|w| Diagnostic::warning(w.as_str())));
     if beauty.iter().all(|v| *v == 0.0) {
         notes.push(Diagnostic::warning("the image is black: no light reaches the camera"));
     }
@@ -223,6 +230,7 @@ fn metadata(run: &Run<'_>) -> Metadata {
         noise: status.noise.map(|n| n.typical),
         complete: run.complete,
         shard: None,
+        block_variances: block_variances(run),
     }
 }
 
@@ -230,7 +238,10 @@ impl Run<'_> {
     /// Numbers about the render.
     pub fn stats(&self) -> serde_json::Value {
         let status = self.status;
+        let details: serde_json::Map<_, _> =
+            self.report.numbers.iter().map(|(name, value)| (name.clone(), (*value).into())).collect();
         serde_json::json!({
+            "details": details,
             "integrator": self.integrator,
             "seed": self.settings.seed,
             "rounds": status.rounds,
@@ -243,6 +254,18 @@ impl Run<'_> {
             "complete": self.complete,
         })
     }
+}
+
+/// Errors of areas, for those who compare images; nothing where one round says nothing about its error.
+fn block_variances(run: &Run<'_>) -> Vec<BlockVariances> {
+    let exposure = run.world.camera.exposure;
+    let sides = BLOCK_SIDES.iter().map(|side| Some(*side as u32)).chain([None]);
+    let level = |(level, side)| {
+        let variances = run.film.block_variances(level)?;
+        let stored = |v: Rgb| (v * exposure * exposure).min(Rgb::splat(f32::MAX.into())).as_vec3().to_array();
+        Some(BlockVariances { side, values: variances.into_iter().flat_map(stored).collect() })
+    };
+    sides.enumerate().filter_map(level).collect()
 }
 
 /// Writes the numbers about a render as JSON.

@@ -7,7 +7,7 @@ use std::{
 };
 
 use ajar_integrators::{
-    Context, Integrator, Settings,
+    Context, Integrator, Report, Settings,
     stats::{Noise, noise},
     stop::{Reason, StopRules, is_noise_check},
 };
@@ -134,6 +134,8 @@ pub struct Rendered {
     pub status: Status,
     /// Why it stopped; `None` if it was interrupted.
     pub reason: Option<Reason>,
+    /// What the integrator tells about it.
+    pub report: Report,
 }
 
 /// Renders rounds until a rule holds or `cancel` is raised; the round in progress is then dropped. `each_round` sees the
@@ -147,8 +149,9 @@ pub fn render(
     mut each_round: impl FnMut(&Film, &Status),
 ) -> Rendered {
     let began = Instant::now();
-    let mut film =
-        Film::new(settings.window.pixels(), ajar_integrators::brightness(world, settings.max_depth));
+    let brightness = ajar_integrators::brightness(world, settings.max_depth);
+    let window = settings.window;
+    let mut film = Film::new(window.pixels(), brightness).with_blocks(window.width() as usize);
     let prepared = integrator.prepare(Context { world, settings, cancel });
     let mut status = Status { rounds: 0, samples: 0, elapsed: Duration::ZERO, noise: None };
     let reason = loop {
@@ -172,7 +175,7 @@ pub fn render(
     };
     status.noise = noise(&film, settings.window);
     status.elapsed = began.elapsed();
-    Rendered { film, status, reason }
+    Rendered { film, status, reason, report: prepared.report() }
 }
 
 /// Where results go: the EXR, and the PNG beside it.

@@ -38,13 +38,14 @@ impl Blocks {
         let window = Window { x0: 0, y0: 0, x1: WIDTH, y1: HEIGHT };
         let settings = Settings { seed, max_depth: 10, samples_per_round, window };
         let unit = brightness(world, settings.max_depth);
+        let cancel = AtomicBool::new(false);
+        let prepared = integrator.prepare(Context { world, settings: &settings, cancel: &cancel });
         let (mut sums, mut squares) = ([0.0; VALUES], [0.0; VALUES]);
         for round in 0..ROUNDS {
             let mut film = Film::new(window.pixels(), unit);
             let deposits = film.round();
-            let cancel = &AtomicBool::new(false);
-            integrator.render_round(&Context { world, settings: &settings, cancel }, round, &deposits);
-            film.merge(&deposits, integrator.scale(&settings));
+            prepared.render(round, &deposits);
+            film.merge(&deposits, prepared.scale());
             let mut values = [0.0; VALUES];
             for (x, y) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))) {
                 let block = 3 * (y / BLOCK * (WIDTH / BLOCK) + x / BLOCK) as usize;

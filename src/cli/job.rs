@@ -14,11 +14,8 @@ use crate::{
 const DEFAULT_SPP: u32 = 64;
 /// Edges of the longest path where nothing says another.
 const DEFAULT_DEPTH: u32 = 16;
-/// Fewest rounds that `--spp` is spread over, where it is enough for them: their spread is the noise estimate. Points are
-/// evenly spread within a round only, so more rounds would mean more noise.
+/// Fewest rounds that `--spp` is spread over, where it is enough for them: their spread is the noise estimate.
 const ROUNDS_OF_SPP: u32 = 8;
-/// Eye samples a pixel in a round when only time, noise or rounds limit the render.
-const SAMPLES_PER_ROUND: u32 = 16;
 
 /// What the command line and the file together ask for.
 pub(super) struct Job {
@@ -37,7 +34,7 @@ impl Job {
     /// It cannot be done; of the cause [`Cause::Usage`].
     pub fn new(args: &Args, loaded: &Loaded) -> Result<Self, Diagnostic> {
         let (render, output) = (&loaded.file.render, &loaded.file.output);
-        let name = args.integrator.as_deref().or(render.integrator.as_deref()).unwrap_or("path");
+        let name = args.integrator.as_deref().or(render.integrator.as_deref()).unwrap_or("ajar");
         let integrator = find_integrator(name)?;
         let size = args.size.or(render.size).unwrap_or(DEFAULT_SIZE);
         let max_depth = args.max_depth.or(render.max_depth).unwrap_or(DEFAULT_DEPTH) as usize;
@@ -45,7 +42,7 @@ impl Job {
             let most = integrator.max_depth();
             return Err(wrong(format!("max_depth {max_depth} is more than {name} can build, {most}")));
         }
-        let (rules, samples_per_round) = stop_rules(args, render);
+        let (rules, samples_per_round) = stop_rules(args, render, integrator.samples_per_round());
         let seed = args.seed.or(render.seed).unwrap_or(0);
         let window = window(args, render, size)?;
         let settings = Settings { seed, max_depth, samples_per_round, window };
@@ -80,7 +77,7 @@ fn find_integrator(name: &str) -> Result<&'static dyn Integrator, Diagnostic> {
 }
 
 /// Stop rules given on the command line replace all those of the file.
-fn stop_rules(args: &Args, render: &RenderSettings) -> (StopRules, u32) {
+fn stop_rules(args: &Args, render: &RenderSettings, samples_per_round: u32) -> (StopRules, u32) {
     let given = args.spp.is_some() || args.rounds.is_some() || args.time.is_some() || args.noise.is_some();
     let (mut spp, rounds, time, noise) = if given {
         (args.spp, args.rounds, args.time, args.noise)
@@ -90,7 +87,7 @@ fn stop_rules(args: &Args, render: &RenderSettings) -> (StopRules, u32) {
     if spp.is_none() && rounds.is_none() && time.is_none() && noise.is_none() {
         spp = Some(DEFAULT_SPP);
     }
-    let samples = spp.map_or(SAMPLES_PER_ROUND, |n| floor_power_of_two(n / ROUNDS_OF_SPP).min(256));
+    let samples = spp.map_or(samples_per_round, |n| floor_power_of_two(n / ROUNDS_OF_SPP).min(256));
     let by_spp = spp.map(|n| u64::from(n.div_ceil(samples)));
     let rounds = [rounds, by_spp].into_iter().flatten().min();
     (StopRules { rounds, time, noise }, samples)

@@ -5,6 +5,7 @@ use std::{
     time::Duration,
 };
 
+use ajar_integrators::Report;
 use ajar_render::{World, film::Film};
 use ajar_scene::{Camera, Cause, Diagnostic, Severity, parse_duration, parse_percent};
 use glam::DAffine3;
@@ -39,7 +40,7 @@ pub(super) struct Args {
     /// Film size in pixels [default: 1280x720]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
-    /// How to render: path or bdpt [default: path]
+    /// How to render: ajar, mlt, bdpt or path [default: ajar]
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<String>,
     /// Key of all random numbers
@@ -130,7 +131,7 @@ fn execute(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
     let each_round = |film: &Film, status: &Status| {
         progress.update(status, rules);
         if signals.snapshot_asked() {
-            snapshot(&ready.run(film, status, false), destination, args, log);
+            snapshot(&ready.run(film, status, &Report::default(), false), destination, args, log);
         }
     };
     let rendered = session::render(&ready.world, *integrator, settings, rules, signals.stop(), each_round);
@@ -141,7 +142,7 @@ fn execute(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
         return Ok(Exit::Interrupted);
     }
     let complete = rendered.reason.is_some();
-    let run = ready.run(&rendered.film, &rendered.status, complete);
+    let run = ready.run(&rendered.film, &rendered.status, &rendered.report, complete);
     let notes = write(&run, destination, args).map_err(|d| vec![d])?;
     if !args.quiet {
         log.messages(&notes, Severity::Note);
@@ -175,10 +176,10 @@ impl Ready {
         Ok(Self { world, camera: lens, scene_hash, job })
     }
 
-    fn run<'a>(&'a self, film: &'a Film, status: &'a Status, complete: bool) -> Run<'a> {
+    fn run<'a>(&'a self, film: &'a Film, status: &'a Status, report: &'a Report, complete: bool) -> Run<'a> {
         let Self { world, camera, scene_hash, job } = self;
         let (integrator, settings) = (job.integrator.name(), &job.settings);
-        Run { world, camera, integrator, settings, film, status, complete, scene_hash }
+        Run { world, camera, integrator, settings, film, status, report, complete, scene_hash }
     }
 }
 
@@ -219,7 +220,8 @@ fn summary(run: &Run<'_>, to: &Destination, log: Format) -> String {
     });
     let partial = if run.complete { "" } else { " (interrupted)" };
     let (samples, time) = (status.samples, duration(status.elapsed));
-    format!("{samples} samples a pixel in {time}{noise}{partial}\nwrote {exr}\nwrote {png}")
+    let details: String = run.report.lines.iter().map(|line| format!("\n{line}")).collect();
+    format!("{samples} samples a pixel in {time}{noise}{partial}{details}\nwrote {exr}\nwrote {png}")
 }
 
 fn shown(path: &Path) -> String {

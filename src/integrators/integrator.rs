@@ -96,6 +96,11 @@ pub trait Integrator: Sync {
     /// Longest path that it can build, in edges.
     fn max_depth(&self) -> usize;
 
+    /// Samples a pixel of a round where nothing asks for a number: a few seconds of work on a small image.
+    fn samples_per_round(&self) -> u32 {
+        16
+    }
+
     /// Gets ready to render: whatever all rounds share. Depends on world and settings alone.
     fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a>;
 }

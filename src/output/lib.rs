@@ -14,6 +14,7 @@ mod header;
 mod metadata;
 mod picture;
 mod png;
+mod statistics;
 mod tonemap;
 
 pub use self::atomic::write_atomically;
@@ -24,4 +25,5 @@ pub use self::frames::frame_path;
 pub use self::metadata::Metadata;
 pub use self::picture::{Channel, Layer, Picture, Precision};
 pub use self::png::write_png;
+pub use self::statistics::BlockVariances;
 pub use self::tonemap::{ToneMap, UnknownToneMap, srgb_encode};

@@ -16,7 +16,7 @@ use exr::{
     },
 };
 
-use crate::CameraMatrices;
+use crate::{BlockVariances, CameraMatrices};
 
 const SOFTWARE: &str = concat!("ajar ", env!("CARGO_PKG_VERSION"));
 
@@ -45,6 +45,8 @@ pub struct Metadata {
     pub complete: bool,
     /// Which part of how many a shard holds, as given to `--shard i/n`.
     pub shard: Option<(u32, u32)>,
+    /// Errors of areas, of every side that is kept.
+    pub block_variances: Vec<BlockVariances>,
 }
 
 impl Metadata {
@@ -58,6 +60,7 @@ impl Metadata {
             ..LayerAttributes::default()
         };
         attributes.other.extend(self.custom().into_iter().map(|(name, value)| (text(name), value)));
+        attributes.other.extend(self.block_variances.iter().map(BlockVariances::attribute));
         attributes
     }
 

@@ -4,9 +4,14 @@
 //! on one thread and on 64. [`Film`] adds finished rounds: the sum and the sum of squares of their pixel values, from
 //! which mean and variance follow (mlt.md §6–7 of the design: rounds are independent copies, Veach & Guibas 1997 §3.4).
 
+mod blocks;
+
+pub use blocks::BLOCK_SIDES;
+
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 
 use crate::math::Rgb;
+use blocks::Blocks;
 
 /// Fraction bits of one deposit, in multiples of the film's unit.
 const DEPOSIT_BITS: i32 = 32;
@@ -56,6 +61,7 @@ impl RoundFilm {
 pub struct Film {
     sum: Vec<i128>,
     squares: Vec<i128>,
+    blocks: Option<Blocks>,
     rounds: u64,
     rejected: u64,
     unit_bits: i32,
@@ -65,7 +71,13 @@ impl Film {
     /// An empty film whose unit is the power of two nearest to `brightness`.
     pub fn new(pixels: usize, brightness: f64) -> Self {
         let unit_bits = if brightness > 0.0 { brightness.log2().round() as i32 } else { 0 };
-        Self { sum: vec![0; pixels * 3], squares: vec![0; pixels * 3], rounds: 0, rejected: 0, unit_bits }
+        let zeros = vec![0; pixels * 3];
+        Self { sum: zeros.clone(), squares: zeros, blocks: None, rounds: 0, rejected: 0, unit_bits }
+    }
+
+    /// The same empty film, `width` pixels wide, that keeps the variance of blocks too.
+    pub fn with_blocks(self, width: usize) -> Self {
+        Self { blocks: Some(Blocks::new(width, self.pixels() / width)), ..self }
     }
 
     /// The brightness that counts as 1.
@@ -82,10 +94,14 @@ impl Film {
     pub fn merge(&mut self, round: &RoundFilm, scale: f64) {
         let one = 2f64.powi(SUM_BITS);
         let scale = scale * 2f64.powi(-DEPOSIT_BITS);
-        for ((sum, square), value) in self.sum.iter_mut().zip(&mut self.squares).zip(&round.values) {
-            let v = (value.load(Ordering::Relaxed) as f64 * scale).min(LIMIT);
+        let value = |deposits: &AtomicI64| (deposits.load(Ordering::Relaxed) as f64 * scale).min(LIMIT);
+        let values: Vec<f64> = round.values.iter().map(value).collect();
+        for ((sum, square), v) in self.sum.iter_mut().zip(&mut self.squares).zip(&values) {
             *sum += (v * one).round() as i128;
             *square += (v * v * one).round() as i128;
+        }
+        if let Some(blocks) = &mut self.blocks {
+            blocks.add(&values, one);
         }
         self.rounds += 1;
         self.rejected += round.rejected();
@@ -123,6 +139,16 @@ impl Film {
             let square = self.squares[pixel * 3 + c] as f64 / (one * n);
             ((square - mean * mean) / (n - 1.0)).max(0.0) * unit * unit
         }))
+    }
+
+    /// Estimated variances of the means of the blocks of side [`BLOCK_SIDES`]`[level]`, and for the level behind those of
+    /// the whole film's mean; rows from the top. `None` below two rounds and for films that do not keep them.
+    pub fn block_variances(&self, level: usize) -> Option<Vec<Rgb>> {
+        let blocks = self.blocks.as_ref().filter(|_| self.rounds >= 2)?;
+        let (n, one, unit) = (self.rounds as f64, 2f64.powi(SUM_BITS), self.unit());
+        let means: Vec<f64> = self.sum.iter().map(|sum| *sum as f64 / (one * n)).collect();
+        let variances = blocks.variances(level, &means, n, one);
+        Some(variances.into_iter().map(|v| v * unit * unit).collect())
     }
 }
 

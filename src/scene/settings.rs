@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RenderSettings {
-    /// Name of the integrator. Default `path`.
+    /// Name of the integrator. Default `ajar`.
     pub integrator: Option<String>,
     /// Name of the camera. Default: the first camera of the scene.
     pub camera: Option<String>,

@@ -41,6 +41,10 @@ impl Integrator for Ajar {
         MAX_VERTICES - 2
     }
 
+    fn samples_per_round(&self) -> u32 {
+        4
+    }
+
     fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a> {
         let plan = plan(cx, self.always);
         if plan.mutations_per_sample == 0.0 {

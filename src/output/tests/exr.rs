@@ -8,7 +8,9 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-use ajar_output::{CameraMatrices, Channel, Layer, Metadata, OutputError, Picture, Precision, write_exr};
+use ajar_output::{
+    BlockVariances, CameraMatrices, Channel, Layer, Metadata, OutputError, Picture, Precision, write_exr,
+};
 use exr::prelude::{AttributeValue, FlatImage, FlatSamples, Text, Vec2, f16, read_all_flat_layers_from_file};
 
 const WIDTH: u32 = 5;
@@ -51,6 +53,10 @@ fn picture() -> Picture {
             noise: Some(0.25),
             complete: true,
             shard: Some((2, 8)),
+            block_variances: vec![
+                BlockVariances { side: Some(8), values: vec![0.5, 0.25, 1.0] },
+                BlockVariances { side: None, values: vec![0.1, 0.2, 0.3] },
+            ],
         },
     }
 }
@@ -88,6 +94,12 @@ fn windows_names_and_types_are_kept() {
     assert_eq!(samples(&image, "Z"), &FlatSamples::F32(ramp(0.1)));
 }
 
+/// OpenEXR's `floatvector`.
+fn floats(values: &[f32]) -> AttributeValue {
+    let bytes = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+    AttributeValue::Custom { kind: "floatvector".into(), bytes }
+}
+
 #[test]
 fn metadata_is_kept() {
     let image = written(&picture());
@@ -113,6 +125,8 @@ fn metadata_is_kept() {
         ("ajar:noise", AttributeValue::F32(0.25)),
         ("ajar:complete", AttributeValue::I32(1)),
         ("ajar:shard", AttributeValue::Text("2/8".into())),
+        ("ajar:blockVariance8", floats(&[0.5, 0.25, 1.0])),
+        ("ajar:imageVariance", floats(&[0.1, 0.2, 0.3])),
     ] {
         assert_eq!(attributes.other.get(&Text::from(name)), Some(&value), "{name}");
     }

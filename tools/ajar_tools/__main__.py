@@ -1,0 +1,12 @@
+"""`python -m ajar_tools compare NEW REFERENCE`, the same as `ajar-compare NEW REFERENCE`."""
+
+import sys
+
+from ajar_tools.cli import main
+
+COMMANDS = {"compare": main}
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2 or sys.argv[1] not in COMMANDS:
+        sys.exit("usage: python -m ajar_tools compare NEW REFERENCE [OPTIONS]; compare --help says more")
+    sys.exit(COMMANDS[sys.argv[1]](sys.argv[2:]))

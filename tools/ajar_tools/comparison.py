@@ -1,0 +1,56 @@
+"""Two files through all gates, in order."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ajar_tools.gates import exact, finite, flip, numbers, statistical, structure, variance
+from ajar_tools.picture import CannotCompareError, Picture, read
+from ajar_tools.settings import Settings
+from ajar_tools.verdict import Outcome, Status, Verdict
+
+# Beyond these, other gates have nothing to say: differing windows, or pixels that are no numbers.
+ENDING = ("structure", "finite")
+
+
+def compare(new: str | Path, reference: str | Path, settings: Settings | None = None) -> Verdict:
+    """Whether the image `new` shows what `reference` shows. Never raises for what files hold."""
+    try:
+        return compare_pictures(read(new), read(reference), settings or Settings())
+    except CannotCompareError as error:
+        return Verdict(Outcome.CANNOT, str(new), str(reference), problem=str(error))
+
+
+def compare_pictures(new: Picture, reference: Picture, settings: Settings) -> Verdict:
+    """As `compare`, for images already read.
+
+    Raises:
+        CannotCompareError: their windows differ, or one has no colours.
+    """
+    verdict = Verdict(Outcome.PASS, str(new.path), str(reference.path), pictures=(new, reference))
+    for gate in (structure.check, finite.check, exact.check):
+        result = gate(new, reference, settings)
+        verdict.gates.append(result)
+        if result.gate == "exact" and result.status is Status.PASS:
+            return verdict
+        if result.gate in ENDING and result.status is Status.FAIL:
+            return judge(verdict, settings)
+    verdict.flip = flip.flip_map(new, reference, settings)
+    verdict.gates += [
+        statistical.check(new, reference, settings),
+        variance.check(new, reference, settings),
+        flip.check(verdict.flip, new, reference, settings),
+        numbers.check(new, reference, settings),
+    ]
+    return judge(verdict, settings)
+
+
+def judge(verdict: Verdict, settings: Settings) -> Verdict:
+    """Sets the outcome; failures that the settings excuse are reported as such."""
+    excused = {entry.gate: entry for entry in settings.excused}
+    for gate in verdict.failures:
+        if entry := excused.get(gate.gate):
+            gate.status = Status.REPORT
+            verdict.exceptions.append(f"{gate.gate}, until {entry.until}: {entry.reason}")
+    verdict.outcome = Outcome.FAIL if verdict.failures else Outcome.PASS
+    return verdict

@@ -1,0 +1,40 @@
+"""Gate 2: every pixel is a number, and light is not negative. Both images are checked."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ajar_tools.picture import Picture
+from ajar_tools.settings import Settings
+from ajar_tools.verdict import GateResult, Status
+
+
+def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
+    """Looks for NaN and infinity in all channels that are compared, and for negative colours."""
+    problems = [text for picture in (new, reference) if (text := problem(picture, settings))]
+    if problems:
+        return GateResult("finite", Status.FAIL, "; ".join(problems))
+    return GateResult("finite", Status.PASS, "all pixels are finite, no colour is negative")
+
+
+def problem(picture: Picture, settings: Settings) -> str:
+    """The first kind of pixel that is wrong, in words; empty if there is none."""
+    colors = picture.color_channels
+    names = colors if settings.other_renderer else picture.channels
+    pixels = picture.color if settings.other_renderer else picture.pixels
+    # A sum is finite only if all its terms are, but for overflow; then the slow look decides.
+    if not np.isfinite(pixels.sum(dtype=np.float64)):
+        bad = ~np.isfinite(pixels)
+        if bad.any():
+            return describe(picture, bad, names, "not finite")
+    if float(picture.color.min()) < 0:
+        return describe(picture, picture.color < 0, colors, "negative")
+    return ""
+
+
+def describe(picture: Picture, bad: np.ndarray, names: list[str], what: str) -> str:
+    """How many pixels, and where the first one is."""
+    row, column, channel = np.unravel_index(int(bad.argmax()), bad.shape)
+    window = picture.data_window
+    place = f"first {names[channel]} at pixel ({window.x + column}, {window.y + row})"
+    return f"{int(bad.any(axis=2).sum())} pixels of {picture.path} are {what}, {place}"

@@ -1,0 +1,83 @@
+"""Gate 6: what a person would see, by ꟻLIP (Andersson et al. 2020; for high dynamic range, 2021).
+
+The exposures follow from a fixed luminance, not from each reference, so that numbers can be compared between images.
+Images of more than 0.3 megapixels are averaged over squares first, and the viewing distance grows accordingly: the
+same picture at the same size, without its finest detail. That is what makes the gate affordable.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ajar_tools.flip import exposures_for, hdr_flip
+from ajar_tools.picture import Picture
+from ajar_tools.settings import Settings
+from ajar_tools.verdict import GateResult, Status
+
+MOST_PIXELS = 300_000
+# Pixels a degree: a 0.7 m wide display of 3840 pixels seen from 0.7 m, FLIP's default.
+PIXELS_PER_DEGREE = 67.02064
+# A grey that every picture has, the other end of the exposures.
+MEDIAN_LUMINANCE = 0.18
+DEFAULT_MEAN = 0.05
+DEFAULT_P95 = 0.2
+
+
+@dataclass(frozen=True)
+class FlipMap:
+    """Errors from 0 to 1, averaged over `factor`² pixels each."""
+
+    errors: np.ndarray
+    factor: int
+
+    @property
+    def mean(self) -> float:
+        """Mean error."""
+        return float(self.errors.mean())
+
+    @property
+    def p95(self) -> float:
+        """95th percentile."""
+        return float(np.percentile(self.errors, 95))
+
+
+def check(found: FlipMap, new: Picture, reference: Picture, settings: Settings) -> GateResult:
+    """Judges by the case's limits; by defaults where no statistics can be asked; else it reports."""
+    numbers = {"mean": found.mean, "p95": found.p95, "averaged_over": found.factor}
+    text = f"mean {found.mean:.4f}, 95th percentile {found.p95:.4f}"
+    mean, p95 = settings.flip_mean, settings.flip_p95
+    if new.statistics is None or reference.statistics is None:
+        mean = DEFAULT_MEAN if mean is None else mean
+        p95 = DEFAULT_P95 if p95 is None else p95
+    if mean is None and p95 is None:
+        return GateResult("flip", Status.REPORT, text, numbers)
+    failed = [
+        f"FLIP's {name} is {value:.4f}, more than {limit:g}"
+        for name, value, limit in (("mean", found.mean, mean), ("95th percentile", found.p95, p95))
+        if limit is not None and value > limit
+    ]
+    return GateResult("flip", Status.FAIL if failed else Status.PASS, "; ".join(failed) or text, numbers)
+
+
+def flip_map(new: Picture, reference: Picture, settings: Settings) -> FlipMap:
+    """The errors of every pixel, or square of pixels."""
+    height, width = reference.pixels.shape[:2]
+    factor = 1
+    while (width // factor) * (height // factor) > MOST_PIXELS:
+        factor += 1
+    theirs, ours = (shrunk(picture.color, factor) for picture in (reference, new))
+    exposures = exposures_for(settings.max_luminance, MEDIAN_LUMINANCE)
+    return FlipMap(hdr_flip(theirs, ours, exposures, PIXELS_PER_DEGREE / factor), factor)
+
+
+def shrunk(color: np.ndarray, factor: int) -> np.ndarray:
+    """RGB averaged over squares; rows and columns that fill no square are left out."""
+    if color.shape[2] == 1:
+        color = np.repeat(color, 3, axis=2)
+    if factor > 1:
+        rows, columns = color.shape[0] // factor, color.shape[1] // factor
+        cut = color[: rows * factor, : columns * factor]
+        color = cut.reshape(rows, factor, columns, factor, 3).mean((1, 3))
+    return np.ascontiguousarray(np.maximum(color, 0), np.float32)

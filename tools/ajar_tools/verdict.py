@@ -1,0 +1,94 @@
+"""The result of a comparison, as data and in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ajar_tools.gates.flip import FlipMap
+    from ajar_tools.picture import Picture
+
+
+class Outcome(Enum):
+    """Of a gate or a comparison; the value of a comparison's is its exit code."""
+
+    PASS = 0
+    FAIL = 1
+    CANNOT = 2
+
+
+class Status(Enum):
+    """What a gate says."""
+
+    PASS = "pass"
+    FAIL = "FAIL"
+    REPORT = "report"
+    """It has numbers, and nobody asked it to judge."""
+    SKIP = "skip"
+
+
+@dataclass
+class GateResult:
+    """One gate's finding: a sentence for people, numbers for programs."""
+
+    gate: str
+    status: Status
+    message: str
+    numbers: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass
+class Verdict:
+    """What came out of comparing two files."""
+
+    outcome: Outcome
+    new: str
+    reference: str
+    gates: list[GateResult] = field(default_factory=list)
+    problem: str = ""
+    """Why there is nothing to compare."""
+    exceptions: list[str] = field(default_factory=list)
+    """Failures that the settings excuse, in words."""
+    pictures: tuple[Picture, Picture] | None = None
+    """What was compared, for reports: the new image and the reference."""
+    flip: FlipMap | None = None
+    """The map of gate 6, if it was reached."""
+
+    @property
+    def failures(self) -> list[GateResult]:
+        """The gates that failed."""
+        return [gate for gate in self.gates if gate.status is Status.FAIL]
+
+    def headline(self) -> str:
+        """One sentence."""
+        if self.outcome is Outcome.CANNOT:
+            return f"CANNOT COMPARE: {self.problem}"
+        if self.outcome is Outcome.PASS:
+            return f"SAME PICTURE: {self.new} agrees with {self.reference}"
+        return f"DIFFERENT PICTURE: {self.new} is not {self.reference}: {self.failures[0].message}"
+
+    def text(self) -> str:
+        """The headline and a line a gate."""
+        lines = [self.headline()]
+        lines += [f"  {i}. {g.gate:<10} {g.status.value:<6}  {g.message}" for i, g in enumerate(self.gates, 1)]
+        lines += [f"  excused: {line}" for line in self.exceptions]
+        return "\n".join(lines)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        gates = [
+            {"gate": g.gate, "status": g.status.value.lower(), "message": g.message, "numbers": g.numbers}
+            for g in self.gates
+        ]
+        return {
+            "outcome": self.outcome.name.lower(),
+            "exit_code": self.outcome.value,
+            "headline": self.headline(),
+            "new": self.new,
+            "reference": self.reference,
+            "problem": self.problem,
+            "gates": gates,
+            "exceptions": self.exceptions,
+        }

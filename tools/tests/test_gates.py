@@ -1,0 +1,158 @@
+"""Mutants must fail, at the gate that is there for them; twins must pass. All on images whose noise is known."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from synthetic import File, Recipe, file
+
+from ajar_tools import Outcome, Settings, Verdict, compare
+from ajar_tools.verdict import Status
+
+TWINS = 60
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return file(seed=1000, rounds=64).write(tmp_path_factory.mktemp("reference") / "reference.exr")
+
+
+def gates(verdict: Verdict) -> dict[str, Status]:
+    return {gate.gate: gate.status for gate in verdict.gates}
+
+
+def colors(change: Callable[[np.ndarray], np.ndarray]) -> Callable[[File], None]:
+    """A mutant of the colours."""
+
+    def mutate(mutant: File) -> None:
+        mutant.pixels[..., :3] = change(mutant.pixels[..., :3])
+
+    return mutate
+
+
+def one_pixel(value: float) -> Callable[[File], None]:
+    def mutate(mutant: File) -> None:
+        mutant.pixels[20, 30, 1] = value
+
+    return mutate
+
+
+def without_a_light(image: np.ndarray) -> np.ndarray:
+    """A light that gave the right third a tenth of its brightness."""
+    image[:, 64:] *= 0.9
+    return image
+
+
+MUTANTS: dict[str, tuple[Callable[[File], None], str]] = {
+    "energy +2 %": (colors(lambda image: image * 1.02), "statistics"),
+    "energy -2 %": (colors(lambda image: image * 0.98), "statistics"),
+    "a light off": (colors(without_a_light), "statistics"),
+    "albedo swapped": (colors(lambda image: image[..., ::-1]), "statistics"),
+    "shifted by a pixel": (colors(lambda image: np.roll(image, 1, axis=1)), "statistics"),
+    "empty": (colors(lambda image: image * 0), "statistics"),
+    "one NaN": (one_pixel(np.nan), "finite"),
+    "one infinity": (one_pixel(np.inf), "finite"),
+    "one negative": (one_pixel(-1e-3), "finite"),
+    "renamed channel": (lambda mutant: setattr(mutant, "channels", ("R", "G", "B", "Z")), "structure"),
+    "half floats": (lambda mutant: setattr(mutant, "kind", oiio.HALF), "structure"),
+    "alpha lost": (lambda mutant: mutant.pixels.__setitem__((..., 3), 0.0), "numbers"),
+}
+
+
+@pytest.mark.parametrize("name", MUTANTS)
+def test_mutant_fails_at_its_gate(name: str, reference: Path, tmp_path: Path) -> None:
+    mutate, gate = MUTANTS[name]
+    mutant = file(seed=7)
+    mutate(mutant)
+    verdict = compare(mutant.write(tmp_path / "new.exr"), reference)
+    assert verdict.outcome is Outcome.FAIL
+    assert gates(verdict)[gate] is Status.FAIL, verdict.text()
+
+
+def test_equal_rounds_fail_for_their_variance(reference: Path, tmp_path: Path) -> None:
+    verdict = compare(file(seed=7, equal_rounds=True).write(tmp_path / "new.exr"), reference)
+    assert gates(verdict)["variance"] is Status.FAIL
+
+
+def test_noise_shared_by_neighbours_fails_for_its_variance(reference: Path, tmp_path: Path) -> None:
+    """Threads with the same seed: every pixel is as noisy as before, blocks are not."""
+    verdict = compare(file(seed=7, shared=0.5).write(tmp_path / "new.exr"), reference)
+    assert gates(verdict)["variance"] is Status.FAIL
+
+
+def test_half_the_rounds_claimed_as_all_scatter_too_much(tmp_path: Path) -> None:
+    big = Recipe(width=256, height=192)
+    honest = file(big, seed=1, rounds=32).write(tmp_path / "reference.exr")
+    half = file(big, seed=2, rounds=16)
+    half.variances = {side: variance / 2 for side, variance in half.variances.items()}
+    half.recipe = replace(half.recipe, rounds=32)
+    verdict = compare(half.write(tmp_path / "new.exr"), honest)
+    assert gates(verdict)["statistics"] is Status.FAIL
+    assert "scatter" in verdict.failures[0].message
+
+
+def test_twins_pass(reference: Path, tmp_path: Path) -> None:
+    """None of 60 may fail at alpha 0.001; their smallest probabilities are spread as chance spreads them."""
+    failed, suspicious = [], 0
+    for seed in range(TWINS):
+        new = file(seed=seed, noise=0.8).write(tmp_path / "new.exr")
+        strict = compare(new, reference, Settings(alpha=0.3, variance_ratio=1e9))
+        suspicious += strict.outcome is not Outcome.PASS
+        if not (verdict := compare(file(seed=seed).write(new), reference)).outcome is Outcome.PASS:
+            failed.append(verdict.text())
+    assert not failed
+    # Alpha 0.3 with Bonferroni's correction, over channels and levels that are correlated: fewer than 18 on average.
+    assert suspicious <= 30
+
+
+def test_correlated_twins_pass(tmp_path: Path) -> None:
+    recipe = Recipe(shared=0.5, noise=0.6)
+    reference = file(recipe, seed=1000, rounds=48).write(tmp_path / "reference.exr")
+    for seed in range(20):
+        verdict = compare(file(recipe, seed=seed).write(tmp_path / "new.exr"), reference)
+        assert verdict.outcome is Outcome.PASS, verdict.text()
+
+
+def test_equal_pixels_end_the_comparison(reference: Path) -> None:
+    verdict = compare(reference, reference)
+    assert verdict.outcome is Outcome.PASS
+    assert [gate.gate for gate in verdict.gates] == ["structure", "finite", "exact"]
+
+
+def test_equal_nans_do_not_pass(tmp_path: Path) -> None:
+    spoiled = file(seed=1)
+    spoiled.pixels[:] = np.nan
+    path = spoiled.write(tmp_path / "nan.exr")
+    assert compare(path, path).outcome is Outcome.FAIL
+
+
+def test_images_without_statistics_say_so_and_are_judged_by_flip(tmp_path: Path) -> None:
+    plain = file(seed=1, noise=0.05)
+    plain.variances = {}
+    reference = plain.write(tmp_path / "reference.exr")
+    verdict = compare(file(seed=2, noise=0.05).write(tmp_path / "new.exr"), reference)
+    assert gates(verdict)["statistics"] is Status.SKIP
+    assert "does not declare its noise" in verdict.gates[3].message
+    assert verdict.outcome is Outcome.PASS
+    other = file(seed=2, noise=0.05)
+    other.pixels[..., :3] *= 1.5
+    verdict = compare(other.write(tmp_path / "new.exr"), reference)
+    assert gates(verdict)["flip"] is Status.FAIL
+
+
+def test_place_and_amount_are_found(reference: Path, tmp_path: Path) -> None:
+    spot = file(seed=3)
+    spot.pixels[40:48, 16:24, 1] *= 1.5
+    verdict = compare(spot.write(tmp_path / "new.exr"), reference)
+    numbers = verdict.failures[0].numbers
+    assert numbers["block"] == [16, 40, 24, 48]
+    assert numbers["relative_difference"] == pytest.approx(0.5, abs=0.1)
+    assert "brighter in G" in verdict.headline()
+
+
+def test_few_rounds_are_not_believed(reference: Path, tmp_path: Path) -> None:
+    verdict = compare(file(seed=3, rounds=4).write(tmp_path / "new.exr"), reference)
+    assert gates(verdict)["statistics"] is Status.SKIP

@@ -1,0 +1,146 @@
+"""What cannot be compared is exit code 2 and a sentence; never a pass, never a trace."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from synthetic import file
+
+from ajar_tools import CannotCompareError, Outcome, compare, read
+
+
+@pytest.fixture(scope="module")
+def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return file(seed=1).write(tmp_path_factory.mktemp("good") / "good.exr")
+
+
+def write(path: Path, spec: oiio.ImageSpec) -> Path:
+    image = oiio.ImageBuf(spec)
+    image.set_pixels(spec.roi, np.ones((spec.height, spec.width, spec.nchannels), np.float32))
+    assert image.write(str(path)), image.geterror()
+    return path
+
+
+def refused(path: Path, good: Path) -> str:
+    """The sentence, the same whichever side the file is on."""
+    for pair in ((path, good), (good, path)):
+        verdict = compare(*pair)
+        assert verdict.outcome is Outcome.CANNOT, verdict.text()
+    assert verdict.problem.count("\n") == 0
+    return verdict.problem
+
+
+def test_missing(good: Path, tmp_path: Path) -> None:
+    assert "does not exist" in refused(tmp_path / "missing.exr", good)
+
+
+def test_folder(good: Path, tmp_path: Path) -> None:
+    assert "is not a file" in refused(tmp_path, good)
+
+
+def test_empty_file(good: Path, tmp_path: Path) -> None:
+    (tmp_path / "empty.exr").touch()
+    assert "is empty" in refused(tmp_path / "empty.exr", good)
+
+
+def test_not_an_image(good: Path, tmp_path: Path) -> None:
+    (tmp_path / "text.exr").write_text("not an image")
+    assert "not an OpenEXR file" in refused(tmp_path / "text.exr", good)
+
+
+def test_another_format(good: Path, tmp_path: Path) -> None:
+    assert "not an OpenEXR file" in refused(write(tmp_path / "a.png", oiio.ImageSpec(8, 8, 3, oiio.UINT8)), good)
+
+
+def test_truncated_anywhere(good: Path, tmp_path: Path) -> None:
+    data = good.read_bytes()
+    path = tmp_path / "cut.exr"
+    for length in [5, 8, 40, 200, 800, *range(1500, len(data), len(data) // 12), len(data) - 1]:
+        path.write_bytes(data[:length])
+        assert refused(path, good)
+
+
+def test_other_size(good: Path, tmp_path: Path) -> None:
+    assert "never resampled" in refused(file(seed=1, width=95).write(tmp_path / "a.exr"), good)
+
+
+def test_cropped(good: Path, tmp_path: Path) -> None:
+    spec = oiio.ImageSpec(96, 72, 4, oiio.FLOAT)
+    spec.x, spec.full_width = 8, 104
+    assert "data windows differ" in refused(write(tmp_path / "a.exr", spec), good)
+
+
+def test_no_colours(good: Path, tmp_path: Path) -> None:
+    spec = oiio.ImageSpec(96, 72, 1, oiio.FLOAT)
+    spec.channelnames = ("Z",)
+    with pytest.raises(CannotCompareError, match="neither"):
+        _ = read(write(tmp_path / "z.exr", spec)).color
+
+
+def test_several_parts(good: Path, tmp_path: Path) -> None:
+    path, spec = tmp_path / "parts.exr", oiio.ImageSpec(8, 8, 3, oiio.FLOAT)
+    out = oiio.ImageOutput.create(str(path))
+    assert out.open(str(path), (spec, spec))
+    out.write_image(np.ones((8, 8, 3), np.float32))
+    assert out.open(str(path), spec, "AppendSubimage")
+    out.write_image(np.ones((8, 8, 3), np.float32))
+    out.close()
+    assert "several parts" in refused(path, good)
+
+
+def test_deep(good: Path, tmp_path: Path) -> None:
+    path, spec = tmp_path / "deep.exr", oiio.ImageSpec(4, 4, 2, oiio.FLOAT)
+    spec.channelnames, spec.deep = ("A", "Z"), True
+    samples = oiio.DeepData()
+    samples.init(spec)
+    out = oiio.ImageOutput.create(str(path))
+    assert out.open(str(path), spec)
+    out.write_deep_image(samples)
+    out.close()
+    assert "deep" in refused(path, good)
+
+
+def test_huge(good: Path) -> None:
+    with pytest.raises(CannotCompareError, match="too large"):
+        read(good, most_samples=1000)
+
+
+def test_huge_by_its_header_alone(good: Path, tmp_path: Path) -> None:
+    """The windows promise 10⁹ pixels that the file does not have; nobody may ask for the memory."""
+    data = bytearray(good.read_bytes())
+    for name in (b"dataWindow\0box2i\0", b"displayWindow\0box2i\0"):
+        at = data.index(name) + len(name) + 4
+        data[at + 8 : at + 16] = (39_999).to_bytes(4, "little") + (24_999).to_bytes(4, "little")
+    path = tmp_path / "huge.exr"
+    path.write_bytes(data)
+    assert refused(path, good)
+
+
+def test_random_damage_never_passes_unnoticed(good: Path, tmp_path: Path) -> None:
+    """Damaged pixels are an error or another picture; only bytes that mean nothing may pass."""
+    data, rng = good.read_bytes(), np.random.default_rng(11)
+    path = tmp_path / "damaged.exr"
+    clean = read(good).pixels
+    for _ in range(60):
+        spoiled = bytearray(data)
+        for at in rng.integers(2000, len(data), 3):
+            spoiled[at] ^= int(rng.integers(1, 256))
+        path.write_bytes(spoiled)
+        verdict = compare(path, good)
+        if verdict.outcome is Outcome.PASS:
+            assert np.abs(read(path).pixels - clean).mean() < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [(["good", "good"], 0), (["good", "missing.exr"], 2), (["good"], 2), (["good", "good", "--alpha", "3"], 2)],
+)
+def test_exit_codes(arguments: list[str], code: int, good: Path) -> None:
+    arguments = [str(good) if word == "good" else word for word in arguments]
+    command = [sys.executable, "-m", "ajar_tools", "compare", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == code
+    assert "Traceback" not in done.stderr
