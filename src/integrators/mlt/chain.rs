@@ -99,7 +99,15 @@ impl<'a> Chain<'a> {
         };
         let aim = self.kernel.target.aim(&self.y.path);
         let selection = self.selection_at(&self.y.path);
-        let acceptance = self.acceptance(m, &aux, &aim, &selection);
+        let x = State { path: &self.x, aim: &self.aim, selection: &self.selection };
+        let y = State { path: &self.y.path, aim: &aim, selection: &selection };
+        let ratio = ratio(&self.kernel, &x, &y, m, &aux);
+        if ratio.is_nan() {
+            self.stats.fail(m, Reject::NotFinite);
+            self.pending += 1.0;
+            return;
+        }
+        let acceptance = ratio.min(1.0);
         let accepted = self.rng.f64() < acceptance;
         self.stats.count(m, acceptance, accepted);
         if accepted {
@@ -113,18 +121,25 @@ impl<'a> Chain<'a> {
             self.pending += 1.0 - acceptance;
         }
     }
+}
 
-    /// Metropolis–Hastings: min(1, π(y) T(x|y) / π(x) T(y|x)), the choice of the mutation included.
-    fn acceptance(&mut self, m: usize, aux: &Aux, aim: &Aim, selection: &Selection) -> f64 {
-        let (space, mutation) = (&self.kernel.space, self.kernel.mutations[m]);
-        let forth = mutation.log_q(space, &self.x, &self.y.path, aux);
-        let back = mutation.log_q(space, &self.y.path, &self.x, &aux.reverse());
-        let chosen = selection.probability(m) / self.selection.probability(m);
-        let ratio = (back - forth).exp() * chosen * aim.weight / self.aim.weight;
-        if ratio.is_nan() {
-            self.stats.fail(m, Reject::NotFinite);
-            return 0.0;
-        }
-        ratio.min(1.0)
-    }
+/// A state of a chain: a path, what it aims at, and the chances of the mutations there.
+#[derive(Clone, Copy)]
+pub struct State<'a> {
+    /// The path.
+    pub path: &'a Path,
+    /// Its aim.
+    pub aim: &'a Aim,
+    /// The chances there.
+    pub selection: &'a Selection,
+}
+
+/// Metropolis–Hastings: π(y) T(x|y) / (π(x) T(y|x)) for mutation number `m`, the choice of the mutation included; the
+/// acceptance probability where it is less than 1.
+pub fn ratio(kernel: &Kernel<'_>, x: &State<'_>, y: &State<'_>, m: usize, aux: &Aux) -> f64 {
+    let (space, mutation) = (&kernel.space, kernel.mutations[m]);
+    let forth = mutation.log_q(space, x.path, y.path, aux);
+    let back = mutation.log_q(space, y.path, x.path, &aux.reverse());
+    let chosen = y.selection.probability(m) / x.selection.probability(m);
+    (back - forth).exp() * chosen * y.aim.weight / x.aim.weight
 }

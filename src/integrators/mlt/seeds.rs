@@ -28,6 +28,13 @@ pub struct Candidate {
     pub weight: f64,
 }
 
+impl Candidate {
+    /// Edges of the path.
+    pub fn edges(&self) -> usize {
+        usize::from(self.technique[0]) + usize::from(self.technique[1]) - 1
+    }
+}
+
 /// The bidirectional samples of a round.
 #[derive(Clone, Copy, Debug)]
 pub struct Bootstrap<'w> {

@@ -42,13 +42,33 @@ impl Mutation for Bidirectional {
     }
 
     fn log_q(&self, space: &Space<'_>, x: &Path, y: &Path, aux: &Aux) -> f64 {
-        let (length, new_length) = (aux.removed + 1, aux.added + 1);
-        let deletion = Ranges::of(x).probability(length, aux.stem);
-        let addition = Lengths::new(space, x.edges(), length, aux.stem).probability(new_length);
+        let Chances { range, length, split } = Chances::new(space, x, aux);
+        (range * length * split * y.density(aux.stem, aux.added) / y.scalar()).ln()
+    }
+}
+
+/// Probabilities of the discrete choices.
+#[derive(Clone, Copy, Debug)]
+pub struct Chances {
+    /// Of the piece to delete: p_d of its length, over the number of places.
+    pub range: f64,
+    /// Of the new length, p_a.
+    pub length: f64,
+    /// Of the number of new vertices on the light's side.
+    pub split: f64,
+}
+
+impl Chances {
+    /// Those of `aux` at `x`.
+    pub fn new(space: &Space<'_>, x: &Path, aux: &Aux) -> Self {
+        let (old, new) = (aux.removed + 1, aux.added + 1);
         let least = fewest_from_light(space, aux.stem);
         let most = aux.added - usize::from(aux.stem + aux.removed == x.edges() + 1);
-        let splits = (most + 1 - least) as f64;
-        (deletion * addition / splits * y.density(aux.stem, aux.added) / y.scalar()).ln()
+        Self {
+            range: Ranges::of(x).probability(old, aux.stem),
+            length: Lengths::new(space, x.edges(), old, aux.stem).probability(new),
+            split: 1.0 / (most + 1 - least) as f64,
+        }
     }
 }
 

@@ -5,7 +5,7 @@ mod caustic;
 mod eye_chain;
 mod inversion;
 
-pub use bidirectional::Bidirectional;
+pub use bidirectional::{Bidirectional, Chances};
 pub use caustic::Caustic;
 pub use eye_chain::{Lens, MultiChain};
 pub use inversion::{Technique, Window};

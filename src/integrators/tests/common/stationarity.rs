@@ -9,8 +9,8 @@ use ajar_integrators::{
         chain::{Chain, Kernel},
         choice::{CLASSES, Table, class},
         path::{Path, Space},
-        seeds::{Bootstrap, resample},
-        target::Plain,
+        seeds::{Bootstrap, Candidate, resample},
+        target::Target,
     },
 };
 use ajar_render::{
@@ -63,20 +63,33 @@ impl Drift {
     }
 }
 
+/// Makes the weights of candidates those of the target.
+fn weigh(bootstrap: &Bootstrap<'_>, candidates: &mut [Candidate], target: &dyn Target) {
+    candidates.par_iter_mut().for_each_init(
+        || (bootstrap.tracer(), Path::with_capacity()),
+        |(tracer, path), candidate| {
+            let found = bootstrap.replay(candidate, tracer, path);
+            candidate.weight *= found.map_or(0.0, |()| target.aim(path).weight);
+        },
+    );
+}
+
 /// Runs `mutations` with equal chances for `steps` steps from each of `seeds` seeds.
 pub fn drift(
     world: &World,
     settings: &Settings,
     mutations: &[&dyn Mutation],
+    target: &dyn Target,
     steps: u32,
     seeds: usize,
 ) -> Drift {
     let space = Space::new(world, settings.window, settings.max_depth);
     let bootstrap = Bootstrap { space, seed: settings.seed, round: steps, samples: seeds as u32 };
     let mut candidates = bootstrap.candidates();
+    weigh(&bootstrap, &mut candidates, target);
     let chosen = resample(&mut candidates, seeds, &mut Rng::new(settings.seed, Purpose::Test, 0, 1));
     let table = Table::uniform(&vec![1.0; mutations.len()]);
-    let kernel = Kernel { space, mutations, table: &table, target: &Plain };
+    let kernel = Kernel { space, mutations, table: &table, target };
     let stream = |i: usize| Rng::new(settings.seed, Purpose::Chain, steps, i as u64);
     let blocks: Vec<_> = chosen
         .par_chunks(seeds.div_ceil(64))

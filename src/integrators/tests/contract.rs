@@ -1,0 +1,205 @@
+//! What every mutation promises (mlt.md §8 V3, V4, V8), without running chains to their end.
+#![allow(clippy::unwrap_used, reason = "a failing test panics")]
+
+mod common;
+
+use ajar_integrators::mlt::{
+    Aux, Mutation, Reject,
+    chain::{Kernel, State, ratio},
+    choice::{MAX_MUTATIONS, Selection, Table},
+    mutations::{Bidirectional, mutations},
+    path::{Path, Space},
+    proposal::Proposal,
+    seeds::{Bootstrap, resample},
+    target::{Aim, Target},
+};
+use ajar_render::{
+    World,
+    rng::{Purpose, Rng},
+};
+use common::{scenes::SCENES, settings};
+
+/// Paths in proportion to their contribution.
+fn seeds(world: &World, depth: usize, count: usize) -> (Space<'_>, Vec<Path>) {
+    let settings = settings(world, 11, depth, 1);
+    let space = Space::new(world, settings.window, depth);
+    let bootstrap = Bootstrap { space, seed: 11, round: 0, samples: 4 * count as u32 };
+    let mut candidates = bootstrap.candidates();
+    let chosen = resample(&mut candidates, count, &mut Rng::new(11, Purpose::Test, 0, 0));
+    let mut tracer = bootstrap.tracer();
+    let paths = chosen.iter().filter_map(|&i| {
+        let mut path = Path::with_capacity();
+        bootstrap.replay(&candidates[i as usize], &mut tracer, &mut path)?;
+        Some(path)
+    });
+    (space, paths.collect())
+}
+
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1e-300)
+}
+
+/// Proposals know their densities both ways, and nothing kept from the old path is stale in the new one.
+#[test]
+fn proposals_can_be_read_backwards() {
+    let (list, _) = mutations();
+    for scene in SCENES {
+        let world = (scene.world)();
+        let (space, paths) = seeds(&world, scene.depth, 400);
+        let (mut y, mut rng) = (Proposal::default(), Rng::new(3, Purpose::Test, 0, 0));
+        for mutation in &list {
+            let mut proposals = 0;
+            for x in paths.iter().filter(|x| mutation.applies(x)) {
+                let Ok(aux) = mutation.propose(&space, x, &mut y, &mut rng) else { continue };
+                proposals += 1;
+                let (forth, back) = (
+                    mutation.log_q(&space, x, &y.path, &aux),
+                    mutation.log_q(&space, &y.path, x, &aux.reverse()),
+                );
+                // A mirror between two diffuse surfaces can be deleted but, alone, never be made again.
+                let no_way_back = x.density(aux.stem, aux.removed) == 0.0;
+                assert!(forth.is_finite() && (back.is_finite() || no_way_back), "{}", mutation.name());
+                assert!(mutation.applies(&y.path), "{}: no way back", mutation.name());
+                assert_eq!(aux.reverse().reverse(), aux);
+                let mut again = y.path.clone();
+                let k = again.edges();
+                again.measure(&space, (0, k), None).unwrap();
+                assert!(close(again.scalar(), y.path.scalar()), "{} {}", scene.name, mutation.name());
+                if !world.has_alpha() {
+                    assert!(close(again.density(0, k + 1), y.path.density(0, k + 1)), "{}", mutation.name());
+                }
+            }
+            println!("{}: {} made {proposals} proposals", scene.name, mutation.name());
+        }
+    }
+}
+
+/// V4: where all vertices are replaced, the mean of f*/T over proposals of a length is what paths of that length
+/// contribute to the image, from whatever path the proposal starts.
+#[test]
+fn bidirectional_densities_are_true() {
+    const PROPOSALS: usize = 2_000_000;
+    let scene = &SCENES[0];
+    let world = (scene.world)();
+    let (space, paths) = seeds(&world, scene.depth, 64);
+    let bootstrap = Bootstrap { space, seed: 5, round: 0, samples: 100_000 };
+    let mut by_length = [0.0; 16];
+    for candidate in bootstrap.candidates() {
+        by_length[candidate.edges()] += candidate.weight / 100_000.0;
+    }
+    let (mut y, mut rng) = (Proposal::default(), Rng::new(4, Purpose::Test, 0, 0));
+    let x = paths.iter().find(|x| x.edges() == 3).unwrap();
+    let mut sums = [[0.0; 2]; 16];
+    for _ in 0..PROPOSALS {
+        let Ok(aux) = Bidirectional.propose(&space, x, &mut y, &mut rng) else { continue };
+        if (aux.stem, aux.removed) == (0, x.edges() + 1) {
+            // Splits are not summed over by the proposal, which chooses one of them: the density already does.
+            let value = (-Bidirectional.log_q(&space, x, &y.path, &aux)).exp();
+            let sum = &mut sums[y.path.edges()];
+            sum[0] += value;
+            sum[1] += value * value;
+        }
+    }
+    for k in 2..=5 {
+        let n = PROPOSALS as f64;
+        let (mean, square) = (sums[k][0] / n, sums[k][1] / n);
+        let z = (mean - by_length[k]) / ((square - mean * mean) / n).sqrt().hypot(0.01 * by_length[k]);
+        println!("{k} edges: {mean:.4} by proposals, {:.4} by bidirectional samples, z {z:.2}", by_length[k]);
+        assert!(z.abs() < 4.0, "{k} edges: {mean} {}", by_length[k]);
+    }
+}
+
+/// A mutation of a world with few states, told apart by their raster position: from state i to j with chance q_ij.
+struct Discrete {
+    q: Vec<Vec<f64>>,
+    applies: fn(usize) -> bool,
+}
+
+fn state(x: &Path) -> usize {
+    x.raster.x as usize
+}
+
+impl Mutation for Discrete {
+    fn name(&self) -> &'static str {
+        "discrete"
+    }
+    fn applies(&self, x: &Path) -> bool {
+        (self.applies)(state(x))
+    }
+    fn propose(&self, _: &Space<'_>, _: &Path, _: &mut Proposal, _: &mut Rng) -> Result<Aux, Reject> {
+        Err(Reject::Unsuitable)
+    }
+    fn log_q(&self, _: &Space<'_>, x: &Path, y: &Path, _: &Aux) -> f64 {
+        (self.q[state(x)][state(y)] / y.scalar()).ln()
+    }
+}
+
+/// A target that weighs states differently.
+struct Weighed;
+
+impl Target for Weighed {
+    fn aim(&self, x: &Path) -> Aim {
+        let weight = 1.0 + (state(x) % 3) as f64;
+        Aim { weight, deposit: x.f / (x.scalar() * weight) }
+    }
+}
+
+/// V8: the transition matrix that the driver's ratios make leaves f*·v as it is, to rounding.
+#[test]
+fn the_driver_keeps_the_target_of_a_discrete_world() {
+    const STATES: usize = 24;
+    let scene = &SCENES[2];
+    let world = (scene.world)();
+    let (space, mut paths) = seeds(&world, scene.depth, STATES);
+    let mut rng = Rng::new(9, Purpose::Test, 0, 0);
+    for (i, path) in paths.iter_mut().enumerate() {
+        path.raster.x = i as f64;
+    }
+    let mut matrix = || -> Vec<Vec<f64>> {
+        let row = |rng: &mut Rng| -> Vec<f64> {
+            let row: Vec<f64> = (0..paths.len()).map(|_| rng.f64() + 0.01).collect();
+            let sum: f64 = row.iter().sum();
+            row.iter().map(|q| q / sum).collect()
+        };
+        (0..paths.len()).map(|_| row(&mut rng)).collect()
+    };
+    let (a, b) =
+        (Discrete { q: matrix(), applies: |_| true }, Discrete { q: matrix(), applies: |i| i % 4 != 1 });
+    let list: [&dyn Mutation; 2] = [&a, &b];
+    let mut table = Table::uniform(&[0.4, 0.9]);
+    for (class, row) in table.weights.iter_mut().enumerate() {
+        row[0] += 0.3 * (class % 5) as f64;
+    }
+    let kernel = Kernel { space, mutations: &list, table: &table, target: &Weighed };
+    assert!(list.len() < MAX_MUTATIONS);
+    let aims: Vec<Aim> = paths.iter().map(|p| Weighed.aim(p)).collect();
+    let selections: Vec<Selection> = paths.iter().map(|p| Selection::at(p, &list, &table)).collect();
+    let at = |i: usize| State { path: &paths[i], aim: &aims[i], selection: &selections[i] };
+    let target = |i: usize| paths[i].scalar() * aims[i].weight;
+    let worst = |without_selection: bool| {
+        let mut moved = vec![0.0; paths.len()];
+        for i in 0..paths.len() {
+            let mut stays = 1.0;
+            for j in 0..paths.len() {
+                for (m, q) in [&a.q, &b.q].into_iter().enumerate() {
+                    // Both ends must allow the mutation, else there is no way back.
+                    let chance = selections[i].probability(m) * q[i][j];
+                    if chance == 0.0 {
+                        continue;
+                    }
+                    let mut ratio = ratio(&kernel, &at(i), &at(j), m, &Aux::default());
+                    if without_selection {
+                        ratio *= selections[i].probability(m) / selections[j].probability(m).max(1e-9);
+                    }
+                    let flow = chance * ratio.min(1.0);
+                    moved[j] += target(i) * flow;
+                    stays -= flow;
+                }
+            }
+            moved[i] += target(i) * stays;
+        }
+        (0..paths.len()).map(|i| (moved[i] / target(i) - 1.0).abs()).fold(0.0, f64::max)
+    };
+    assert!(worst(false) < 1e-12, "{}", worst(false));
+    assert!(worst(true) > 1e-3, "a ratio without the choice of the mutation must fail: {}", worst(true));
+}
