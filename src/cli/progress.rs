@@ -41,7 +41,7 @@ impl Progress {
             bar.set_message(text);
         } else if !self.quiet && self.last.elapsed() >= PLAIN_INTERVAL {
             self.last = Instant::now();
-            self.log.progress(&format!("{:3.0} %  {text}", done * 100.0), &numbers(status, done));
+            self.log.progress(&format!("{:3.0} %  {text}", done * 100.0), numbers(status, done));
         }
     }
 

@@ -1,96 +1,30 @@
-//! Where a scene is, and the camera and light that a scene without any gets.
+//! Where a scene is.
 
-use std::f64::consts::PI;
+use std::collections::HashMap;
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-use crate::{Camera, Diagnostic, Id, Light, LightKind, Material, Mesh, Node, Projection, Scene};
-
-/// Vertical angle of the camera that frames a scene, radians.
-const YFOV: f64 = 40.0 * PI / 180.0;
-
-/// From the scene's centre towards that camera: in front, to the right, above.
-const VIEW: DVec3 = DVec3::new(0.6, 0.5, 1.0);
-
-/// Radiance of the default studio, cd/m².
-const STUDIO_GREY: f32 = 0.35;
-
-/// Illuminance of its key light, lux.
-const STUDIO_KEY: f32 = 2.2;
-
-/// Full angle of the key light, radians: soft shadows.
-const STUDIO_KEY_ANGLE: f32 = 0.35;
-
-/// Where the key light shines.
-const STUDIO_KEY_DIRECTION: DVec3 = DVec3::new(0.55, -0.9, -0.5);
+use crate::{Id, Mesh, Node, Scene};
 
 impl Scene {
     /// The smallest box along the world's axes that holds all triangles of visible meshes: lower and upper corner in
     /// metres. `None` without triangles. Vertices that are not finite or that no triangle uses do not count.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let mut bounds: Option<(DVec3, DVec3)> = None;
+        let mut corners: HashMap<Id<Mesh>, Vec<Vec3>> = HashMap::new();
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for placed in self.placed().iter().filter(|placed| placed.visible) {
-            for mesh in placed.node.meshes.iter().filter_map(|&id| self.meshes.get(id)) {
-                for &index in mesh.triangles.iter().flatten() {
-                    let Some(position) = mesh.positions.get(index as usize) else { continue };
-                    let point = placed.world.transform_point3(position.as_dvec3());
+            for &id in &placed.node.meshes {
+                let Some(mesh) = self.meshes.get(id) else { continue };
+                // Gathered once: a vertex is a corner of some six triangles, and a mesh may be placed ten thousand times.
+                for corner in corners.entry(id).or_insert_with(|| used_positions(mesh)) {
+                    let point = placed.world.transform_point3(corner.as_dvec3());
                     if point.is_finite() {
-                        let (low, high) = bounds.unwrap_or((point, point));
-                        bounds = Some((low.min(point), high.max(point)));
+                        (low, high) = (low.min(point), high.max(point));
                     }
                 }
             }
         }
-        bounds
-    }
-
-    /// Whether some node places a camera.
-    pub fn has_camera(&self) -> bool {
-        self.placed().iter().any(|placed| placed.node.camera.is_some())
-    }
-
-    /// Whether there is anything to see by: a visible light, or a visible mesh that emits more than 1 cd/m². Dimmer ones
-    /// are labels and displays, made for renderers whose emission lights nothing.
-    pub fn has_light(&self) -> bool {
-        self.placed().iter().filter(|placed| placed.visible).any(|placed| {
-            let material = |mesh: &Mesh| self.materials.get(placed.node.material.or(mesh.material)?);
-            placed.node.light.is_some()
-                || placed
-                    .node
-                    .meshes
-                    .iter()
-                    .filter_map(|&id| material(self.meshes.get(id)?))
-                    .any(|material: &Material| !material.unlit && material.emission.value.max_element() > 1.0)
-        })
-    }
-
-    /// Adds a [`framing_camera`] unless there is a camera, and says so.
-    pub fn add_default_camera(&mut self, aspect: f64) -> Option<Diagnostic> {
-        if self.has_camera() {
-            return None;
-        }
-        let (camera, transform) = framing_camera(self, aspect);
-        let name = camera.name.clone();
-        let camera = Some(self.cameras.push(camera));
-        self.add_root(Node { name, transform, camera, ..Node::default() });
-        Some(Diagnostic::note("the scene has no camera, added one that sees all of it"))
-    }
-
-    /// Adds a neutral studio unless there is light, and says so: grey surroundings, and a large soft key light from above,
-    /// left of the default camera, so that white things show their shape. A white surface that faces the key light has a
-    /// radiance near 1.
-    pub fn add_default_light(&mut self) -> Option<Diagnostic> {
-        if self.has_light() {
-            return None;
-        }
-        let sky = LightKind::Environment { radiance: STUDIO_GREY, texture: None };
-        let key = LightKind::Directional { illuminance: STUDIO_KEY, angle: STUDIO_KEY_ANGLE };
-        for (name, kind) in [("studio", sky), ("studio key", key)] {
-            let light = Some(self.lights.push(Light { name: name.to_owned(), color: Vec3::ONE, kind }));
-            let transform = looking(DVec3::ZERO, STUDIO_KEY_DIRECTION, DVec3::Y);
-            self.add_root(Node { name: name.to_owned(), transform, light, ..Node::default() });
-        }
-        Some(Diagnostic::note("the scene has no light, added a grey studio with a soft key light"))
+        low.cmple(high).all().then_some((low, high))
     }
 
     /// Adds a node at the top of the hierarchy.
@@ -101,29 +35,15 @@ impl Scene {
     }
 }
 
-/// A perspective camera that sees the whole bounding sphere of the scene's bounds from the front, right and above, in an
-/// image `aspect` times as wide as high, and its place in the world. A scene without bounds counts as a ball of 1 m at
-/// the origin.
-pub fn framing_camera(scene: &Scene, aspect: f64) -> (Camera, DAffine3) {
-    let (low, high) = scene.bounds().unwrap_or((DVec3::ZERO, DVec3::ZERO));
-    let center = (low + high) / 2.0;
-    let extent = (high - low).length() / 2.0;
-    let radius = if extent > 0.0 { extent } else { 1.0 };
-    // The sphere must fit the narrower of the two angles: it touches a cone of half angle a at distance r / sin a.
-    let half = ((YFOV / 2.0).tan() * aspect.min(1.0)).atan();
-    let distance = radius / half.sin();
-    let camera = Camera {
-        name: "default".to_owned(),
-        projection: Projection::Perspective {
-            yfov: YFOV as f32,
-            lens_radius: 0.0,
-            focus_distance: distance as f32,
-            shift: [0.0, 0.0],
-        },
-        aspect: None,
-        exposure: 1.0,
-    };
-    (camera, looking(center + distance * VIEW.normalize(), -VIEW, DVec3::Y))
+/// Positions of the vertices that triangles use, each once.
+fn used_positions(mesh: &Mesh) -> Vec<Vec3> {
+    let mut used = vec![false; mesh.positions.len()];
+    for &index in mesh.triangles.iter().flatten() {
+        if let Some(used) = used.get_mut(index as usize) {
+            *used = true;
+        }
+    }
+    mesh.positions.iter().zip(used).filter(|(_, used)| *used).map(|(position, _)| *position).collect()
 }
 
 /// The rigid motion to `position` that turns −Z along `forward` and +Y as near to `up` as it can; where `up` lies along

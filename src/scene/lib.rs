@@ -6,6 +6,7 @@
 mod arena;
 mod bounds;
 mod camera;
+mod defaults;
 mod diagnostic;
 mod edit;
 mod file;
@@ -24,8 +25,8 @@ mod texture;
 mod validate;
 
 pub use arena::{Arena, Id};
-pub use bounds::framing_camera;
 pub use camera::{Camera, Projection};
+pub use defaults::framing_camera;
 pub use diagnostic::{Cause, Diagnostic, Severity};
 pub use file::{Overrides, SceneFile, load, load_asset};
 pub use import::{Feature, ImportRequest, Imported, Importer};

@@ -79,7 +79,7 @@ fn defaults_are_added_once() {
     assert_eq!((scene.add_default_camera(1.5), scene.add_default_light()), (None, None));
     assert!(scene.validate().is_empty(), "{:?}", scene.validate());
     assert_eq!((scene.roots.len(), scene.cameras.len(), scene.lights.len()), (3, 1, 2));
-    assert!(matches!(scene.lights[Id::new(0)].kind, LightKind::Environment { texture: None, .. }));
+    assert!(matches!(scene.lights[Id::new(0)].kind, LightKind::Environment { texture: Some(_), .. }));
 }
 
 #[test]
@@ -96,6 +96,11 @@ fn light_is_what_can_be_seen() {
     assert!(!scene.has_light(), "materials without a mesh do not count");
     scene.nodes[Id::new(0)].material = Some(glow);
     assert!(scene.has_light());
+    scene.meshes[Id::new(0)].positions.push(Vec3::splat(10.0));
+    scene.meshes[Id::new(0)].triangles.push([0, 3, 3]);
+    assert!(!scene.has_light(), "a filament lights nothing");
+    scene.materials[glow].emission.value *= 1000.0;
+    assert!(scene.has_light(), "but a bright one");
     scene.materials[glow] = Material { unlit: true, ..Material::default() };
     assert!(!scene.has_light(), "unlit things light nothing");
     scene.materials[glow] = Material { emission: Input::constant(Vec3::X), ..Material::default() };
