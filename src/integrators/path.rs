@@ -73,7 +73,7 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
     let lens = sampler.next_2d();
     let ray = world.camera.ray(raster, lens);
     let (mut from, mut here) = (world.lens_vertex(ray.origin), world.lens_vertex(ray.origin));
-    let mut here = &mut here;
+    let (mut here, mut light) = (&mut here, world.lens_vertex(ray.origin));
     let mut walk = Walk {
         from: &mut from,
         origin: ray.origin,
@@ -105,7 +105,7 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
         let [u, v, choice, u_survival] = sampler.next_4d();
         let next_event = (choice, [u, v]);
         if here.bsdf.has_smooth() {
-            sum += walk.throughput * next_event_estimate(world, here, w_e, survival, next_event);
+            sum += walk.throughput * next_event_estimate(world, here, w_e, survival, next_event, &mut light);
         }
         let [u, v, u_lobe, _] = sampler.next_4d();
         let Some(step) = here.scatter(Side::TowardLight, w_e, u_lobe, [u, v]) else { break };
@@ -150,26 +150,27 @@ fn met_light(world: &World, x0: &Vertex, walk: &Walk<'_>) -> Rgb {
     radiance * (met / (met + world.lights.density(x0)))
 }
 
-/// One light sample for `here`, weighed against meeting the same light by chance.
+/// One light sample for `here`, weighed against meeting the same light by chance. `x0` is room for the light's end.
 fn next_event_estimate(
     world: &World,
     here: &Vertex,
     w_e: DVec3,
     survival: f64,
     (choice, u): (f64, [f64; 2]),
+    x0: &mut Vertex,
 ) -> Rgb {
-    let Some((x0, density)) = world.lights.sample(choice, u) else { return Rgb::ZERO };
-    let Some(edge) = Edge::between(&x0, here, world.shortest_edge) else { return Rgb::ZERO };
+    let Some(density) = world.lights.sample_into(choice, u, x0) else { return Rgb::ZERO };
+    let Some(edge) = Edge::between(x0, here, world.shortest_edge) else { return Rgb::ZERO };
     let geometry = x0.projected(edge.to_eye) * here.projected(edge.to_eye) * edge.falloff;
     let scattering = here.evaluate(-edge.to_eye, w_e);
-    let value = scattering.value * world.emitted(&x0, edge.to_eye) * (geometry / density);
+    let value = scattering.value * world.emitted(x0, edge.to_eye) * (geometry / density);
     if value == Rgb::ZERO {
         return value;
     }
-    let value = value * world.transmittance(&x0, here, &edge);
+    let value = value * world.transmittance(x0, here, &edge);
     if value == Rgb::ZERO || !x0.can_be_met() {
-        return value * world.coverage(&x0);
+        return value * world.coverage(x0);
     }
-    let met = edge.density(scattering.toward_light * survival, here, &x0, false);
-    value * (world.coverage(&x0) * density / (density + met))
+    let met = edge.density(scattering.toward_light * survival, here, x0, false);
+    value * (world.coverage(x0) * density / (density + met))
 }
