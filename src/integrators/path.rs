@@ -129,7 +129,7 @@ pub fn walk(
     let lens = sampler.next_2d();
     let ray = world.camera.ray(raster, lens);
     let (mut from, mut here) = (world.lens_vertex(ray.origin), world.lens_vertex(ray.origin));
-    let mut here = &mut here;
+    let (mut here, mut light) = (&mut here, world.lens_vertex(ray.origin));
     let mut walk = Walk {
         from: &mut from,
         origin: ray.origin,
@@ -161,8 +161,8 @@ pub fn walk(
         let [u, v, choice, u_survival] = sampler.next_4d();
         let next_event = (choice, [u, v]);
         if here.bsdf.has_smooth() {
-            let limit = Limit { edges: edges + 1, survival };
-            next_event_estimate(world, here, &walk, limit, next_event, visitor);
+            let next = NextEvent { edges: edges + 1, survival, x0: &mut light };
+            next_event_estimate(world, here, &walk, next, next_event, visitor);
         }
         let [u, v, u_lobe, _] = sampler.next_4d();
         let Some(step) = here.scatter(Side::TowardLight, w_e, u_lobe, [u, v]) else { break };
@@ -213,11 +213,14 @@ fn met_light(world: &World, x0: &Vertex, walk: &Walk<'_>, edges: usize, visitor:
     visitor.found(&Found { value, edges, x0, seen_from: None });
 }
 
-/// Edges of the paths that end at a vertex, and the probability that the walk goes on from it.
-#[derive(Clone, Copy)]
-struct Limit {
+/// What next-event estimation needs besides the vertex.
+struct NextEvent<'v> {
+    /// Edges of the path that it makes.
     edges: usize,
+    /// Probability that the walk goes on from the vertex.
     survival: f64,
+    /// Room for the light's end.
+    x0: &'v mut Vertex,
 }
 
 /// One light sample for `here`, weighed against meeting the same light by chance.
@@ -225,26 +228,27 @@ fn next_event_estimate(
     world: &World,
     here: &Vertex,
     walk: &Walk<'_>,
-    Limit { edges, survival }: Limit,
+    next: NextEvent<'_>,
     (choice, u): (f64, [f64; 2]),
     visitor: &mut impl Visitor,
 ) {
-    let Some((x0, density)) = world.lights.sample(choice, u) else { return };
-    let Some(edge) = Edge::between(&x0, here, world.shortest_edge) else { return };
+    let NextEvent { edges, survival, x0 } = next;
+    let Some(density) = world.lights.sample_into(choice, u, x0) else { return };
+    let Some(edge) = Edge::between(x0, here, world.shortest_edge) else { return };
     let geometry = x0.projected(edge.to_eye) * here.projected(edge.to_eye) * edge.falloff;
     let scattering = here.evaluate(-edge.to_eye, -walk.direction);
-    let value = scattering.value * world.emitted(&x0, edge.to_eye) * (geometry / density);
+    let value = scattering.value * world.emitted(x0, edge.to_eye) * (geometry / density);
     if value == Rgb::ZERO {
         return;
     }
-    let hidden = world.passed(&x0, here) * world.coverage(&x0);
+    let hidden = world.passed(x0, here) * world.coverage(x0);
     if hidden <= 0.0 {
         return;
     }
-    let mut value = walk.throughput * value * world.absorption(&x0, here, &edge) * hidden;
+    let mut value = walk.throughput * value * world.absorption(x0, here, &edge) * hidden;
     if x0.can_be_met() {
-        let met = edge.density(scattering.toward_light * survival, here, &x0, false);
+        let met = edge.density(scattering.toward_light * survival, here, x0, false);
         value *= density / (density + met * hidden);
     }
-    visitor.found(&Found { value, edges, x0: &x0, seen_from: Some(here) });
+    visitor.found(&Found { value, edges, x0, seen_from: Some(here) });
 }

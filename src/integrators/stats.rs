@@ -1,4 +1,8 @@
 //! Error of an image, estimated from the spread of its rounds (mlt.md §7; Veach & Guibas 1997 §3.4).
+//!
+//! Rounds of eye paths take consecutive samples of one sequence a pixel (`ajar_render::sampler`): what is smooth in a
+//! pixel cancels between them, while the estimate takes them as independent. It is then too high, never too low in the
+//! mean, so that a render which stops at a noise limit has kept it.
 
 use ajar_render::{film::Film, math::scalar};
 

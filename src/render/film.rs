@@ -2,7 +2,9 @@
 //!
 //! A round deposits into [`RoundFilm`] from any number of threads; integer addition commutes, so the bits are the same
 //! on one thread and on 64. [`Film`] adds finished rounds: the sum and the sum of squares of their pixel values, from
-//! which mean and variance follow (mlt.md §6–7 of the design: rounds are independent copies, Veach & Guibas 1997 §3.4).
+//! which mean and variance follow (mlt.md §6–7 of the design: rounds are copies of one estimate, Veach & Guibas 1997 §3.4).
+//! The variance takes rounds as independent. Those that share a low-discrepancy sequence ([`crate::sampler`]) are better:
+//! each fills the gaps of the others, so the mean is closer to the truth than their spread says.
 
 mod blocks;
 
@@ -128,7 +130,8 @@ impl Film {
         Rgb::from_array(std::array::from_fn(|c| self.sum[pixel * 3 + c] as f64 * scale))
     }
 
-    /// Estimated variance of [`Film::mean`] at a pixel; infinite below two rounds.
+    /// Estimated variance of [`Film::mean`] at a pixel, a bound from above where rounds share a sequence; infinite below
+    /// two rounds.
     pub fn variance_of_mean(&self, pixel: usize) -> Rgb {
         if self.rounds < 2 {
             return Rgb::INFINITY;

@@ -98,32 +98,31 @@ impl Sobol {
 
     #[inline]
     fn begin(&mut self) {
-        self.set = if self.sets < EVEN_SETS {
-            self.even_set()
+        if self.sets < EVEN_SETS {
+            self.spread_evenly();
         } else {
-            [self.random(), self.random(), self.random(), self.random()]
-        };
+            self.set = [self.random(), self.random(), self.random(), self.random()];
+        }
         self.sets += 1;
         self.next = 0;
     }
 
     #[inline]
-    fn even_set(&mut self) -> [f64; 4] {
+    fn spread_evenly(&mut self) {
         let mut seeds = self.scramble ^ self.sets.wrapping_mul(SETS);
         let (ab, cd, order) = (splitmix(&mut seeds), splitmix(&mut seeds), splitmix(&mut seeds) as u32);
         let index = owen(self.index.reverse_bits(), order) >> (32 - SAMPLE_BITS);
         let scrambles = [ab as u32, (ab >> 32) as u32, cd as u32, (cd >> 32) as u32];
         // The 16 bits below those of Sobol' and scramble keep values from tying.
         let low = splitmix(&mut self.random);
-        let (mut point, mut set) = (sobol(index), [0.0; 4]);
+        let mut point = sobol(index);
         for k in 0..4 {
             point[k] = owen(point[k], scrambles[k]).reverse_bits();
         }
         for k in 0..4 {
             let bits = u64::from(point[k]) << 16 | low >> (16 * k) & 0xFFFF;
-            set[k] = bits as f64 * (1.0 / (1u64 << 48) as f64);
+            self.set[k] = bits as f64 * (1.0 / (1u64 << 48) as f64);
         }
-        set
     }
 }
 

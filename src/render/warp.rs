@@ -16,12 +16,44 @@ pub fn square_to_disc(u: [f64; 2]) -> DVec2 {
         return DVec2::ZERO;
     }
     if a.abs() > b.abs() {
-        let (sin, cos) = (FRAC_PI_4 * b / a).sin_cos();
+        let (sin, cos) = sin_cos_of_eighth(FRAC_PI_4 * b / a);
         DVec2::new(a * cos, a * sin)
     } else {
-        let (sin, cos) = (FRAC_PI_4 * a / b).sin_cos();
+        let (sin, cos) = sin_cos_of_eighth(FRAC_PI_4 * a / b);
         DVec2::new(b * sin, b * cos)
     }
+}
+
+/// Sine and cosine of |x| ≤ π/4, where Taylor's series to the order of x¹⁶ are exact but for rounding: a fraction of the
+/// time that functions for all numbers take, and the same on every system.
+#[inline]
+fn sin_cos_of_eighth(x: f64) -> (f64, f64) {
+    const SIN: [f64; 7] = [
+        -1.0 / 6.0,
+        1.0 / 120.0,
+        -1.0 / 5040.0,
+        1.0 / 362_880.0,
+        -1.0 / 39_916_800.0,
+        1.0 / 6_227_020_800.0,
+        -1.0 / 1_307_674_368_000.0,
+    ];
+    const COS: [f64; 8] = [
+        -1.0 / 2.0,
+        1.0 / 24.0,
+        -1.0 / 720.0,
+        1.0 / 40_320.0,
+        -1.0 / 3_628_800.0,
+        1.0 / 479_001_600.0,
+        -1.0 / 87_178_291_200.0,
+        1.0 / 20_922_789_888_000.0,
+    ];
+    let square = x * x;
+    let (mut sin, mut cos) = (0.0, COS[7]);
+    for k in (0..7).rev() {
+        sin = sin * square + SIN[k];
+        cos = cos * square + COS[k];
+    }
+    (x + x * square * sin, 1.0 + square * cos)
 }
 
 /// Inverse of [`square_to_disc`]; points outside the disc land outside the square or are clamped onto its border by
@@ -148,6 +180,15 @@ mod tests {
         }
         for u in [[0.5; 2], [0.0, 0.0], [0.0, 0.5], [0.5, 0.0], [0.25, 0.25], [0.75, 0.25]] {
             close(disc_to_square(square_to_disc(u)), u);
+        }
+    }
+
+    #[test]
+    fn short_series_are_sine_and_cosine() {
+        for i in -1000..=1000 {
+            let x = FRAC_PI_4 * f64::from(i) / 1000.0;
+            let (sin, cos) = sin_cos_of_eighth(x);
+            assert!((sin - x.sin()).abs() <= 2e-16 && (cos - x.cos()).abs() <= 2.3e-16, "{x}");
         }
     }
 

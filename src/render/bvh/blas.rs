@@ -183,7 +183,7 @@ impl Blas {
     }
 
     /// The hit in f64. `t` counts from the true origin.
-    #[inline]
+    #[inline(always)]
     pub(super) fn refine(&self, ray: &LocalRay, hit: &Candidate) -> Refined {
         let [a, b, c] = self.slot_vertices(hit.slot);
         let vertices = [self.center + a, self.center + b, self.center + c];
@@ -253,7 +253,7 @@ fn enter_from_outside(origin: DVec3, direction: DVec3, low: DVec3, high: DVec3, 
 }
 
 /// Möller & Trumbore 1997 in f64, with the point kept inside the triangle.
-#[inline]
+#[inline(always)]
 fn refine([a, b, c]: [DVec3; 3], vertices: [DVec3; 3], ray: &LocalRay, hit: &Candidate) -> Refined {
     let (ab, ac) = (b - a, c - a);
     let p = ray.direction.cross(ac);

@@ -12,7 +12,6 @@ pub(crate) use shapes::tessellate;
 use glam::DVec3;
 
 use crate::{
-    bsdf::{Bsdf, Mode},
     distribution::Discrete,
     environment::Environment,
     math::{Frame, Rgb},
@@ -128,21 +127,29 @@ impl Lights {
     /// Samples the light end x_0 of a path and its density P_L: per area on triangles, per solid angle for the
     /// surroundings, discrete for lights without extent. The choice does not depend on where it is used, so the same
     /// density holds for next-event estimation and for emission.
-    #[inline]
     pub fn sample(&self, choice: f64, u: [f64; 2]) -> Option<(Vertex, f64)> {
+        let mut vertex = Vertex::isolated(Kind::Environment, DVec3::Z, Vertex::NO_EMITTER);
+        let density = self.sample_into(choice, u, &mut vertex)?;
+        Some((vertex, density))
+    }
+
+    /// As [`Lights::sample`], in place. The vertex must scatter nothing, as those of lights do.
+    pub fn sample_into(&self, choice: f64, u: [f64; 2], vertex: &mut Vertex) -> Option<f64> {
         let (index, pmf, rest) = self.choice.sample(choice)?;
-        let emitter = index as u32;
+        vertex.emitter = index as u32;
         if let Some(light) = self.dirac.get(index) {
-            return Some((Vertex::isolated(light.kind(), light.place(), emitter), pmf));
+            (vertex.kind, vertex.p, vertex.rounding) = (light.kind(), light.place(), 0.0);
+            return Some(pmf);
         }
-        if let Some(triangle) = self.triangle(emitter) {
-            let [b, c] = warp::square_to_triangle(u);
-            return Some((triangle.vertex([b, c], emitter), pmf / triangle.area));
+        if let Some(triangle) = self.triangle(vertex.emitter) {
+            triangle.set_vertex(warp::square_to_triangle(u), vertex);
+            return Some(pmf / triangle.area);
         }
         let environment = self.environment.as_ref()?;
         let (_, direction) = environment.sample(rest, u);
         let density = environment.pdf(direction);
-        (density > 0.0).then(|| (Vertex::isolated(Kind::Environment, direction, emitter), pmf * density))
+        (vertex.kind, vertex.p, vertex.rounding) = (Kind::Environment, direction, 0.0);
+        (density > 0.0).then_some(pmf * density)
     }
 
     /// Density P_L of a light end, as [`Lights::sample`] returns it.
@@ -222,20 +229,15 @@ impl Lights {
 }
 
 impl TriangleLight {
-    /// The point of barycentric weights `uv` as a light end.
+    /// Places `vertex` at the point of barycentric weights `uv`.
     #[inline]
-    fn vertex(&self, uv: [f64; 2], emitter: u32) -> Vertex {
+    fn set_vertex(&self, uv: [f64; 2], vertex: &mut Vertex) {
         let [a, b, c] = self.vertices;
-        Vertex {
-            kind: Kind::Surface,
-            p: a * (1.0 - uv[0] - uv[1]) + b * uv[0] + c * uv[1],
-            ng: self.normal,
-            frame: Frame::from_z(self.normal),
-            site: Site { instance: self.instance, triangle: self.triangle, uv },
-            bsdf: Bsdf::BLACK,
-            emitter,
-            rounding: self.rounding,
-            mode: Mode::Smooth,
-        }
+        vertex.kind = Kind::Surface;
+        vertex.p = a * (1.0 - uv[0] - uv[1]) + b * uv[0] + c * uv[1];
+        vertex.ng = self.normal;
+        vertex.frame = Frame::from_z(self.normal);
+        vertex.site = Site { instance: self.instance, triangle: self.triangle, uv };
+        vertex.rounding = self.rounding;
     }
 }

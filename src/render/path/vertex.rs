@@ -141,7 +141,7 @@ impl Vertex {
     /// Scattering of light that comes from `w_l` and leaves to `w_e`, smooth lobes only (mlt.md §1.3). `value` is the
     /// vertex's factor of f: the radiance BSDF times |w_l·Ns| / |w_l·Ng|, since geometric terms carry geometric cosines.
     /// The densities are per solid angle.
-    #[inline]
+    #[inline(always)]
     pub fn evaluate(&self, w_l: DVec3, w_e: DVec3) -> Evaluation {
         let (Some(ratio), Some(_)) = (self.shading_ratio(w_l), self.shading_ratio(w_e)) else {
             return Evaluation::default();

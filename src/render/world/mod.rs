@@ -82,6 +82,7 @@ impl World {
     }
 
     /// The vertex at the lens point `p`.
+    #[inline]
     pub fn lens_vertex(&self, p: DVec3) -> Vertex {
         Vertex::isolated(Kind::Lens, p, Vertex::NO_EMITTER)
     }
