@@ -13,11 +13,15 @@ use ajar_output::{
     BlockVariances, CameraMatrices, Channel, Layer, Metadata, OutputError, Picture, Precision, ToneMap,
     write_atomically, write_exr, write_png,
 };
-use ajar_render::{World, film::BLOCK_SIDES, math::Rgb};
-use ajar_scene::{Camera, Diagnostic};
+use ajar_render::{
+    World,
+    film::{BLOCK_SIDES, Film},
+    math::Rgb,
+};
+use ajar_scene::{Camera, Cause, Diagnostic};
 use glam::DAffine3;
 
-use crate::session::Rendered;
+use crate::session::Status;
 
 /// An auxiliary layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +67,7 @@ impl Aov {
         Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, aov)| *aov).ok_or_else(|| {
             let known: Vec<_> = Self::ALL.iter().map(|(name, _)| *name).collect();
             Diagnostic::error(format!("there is no AOV \"{name}\""))
+                .because(Cause::Usage)
                 .hint(format!("choose from: {}", known.join(", ")))
         })
     }
@@ -95,8 +100,12 @@ pub struct Run<'a> {
     pub integrator: &'a str,
     /// Its settings.
     pub settings: &'a Settings,
-    /// The film and its state.
-    pub rendered: &'a Rendered,
+    /// The film.
+    pub film: &'a Film,
+    /// How far it is.
+    pub status: &'a Status,
+    /// Whether a stop rule ended the render.
+    pub complete: bool,
     /// Hash of the scene.
     pub scene_hash: &'a str,
 }
@@ -138,7 +147,7 @@ pub fn write(run: &Run<'_>, to: &Destination) -> Result<Vec<Diagnostic>, OutputE
             Diagnostic::note(format!("{layer} has values up to {} and was written as full floats", w.peak))
         })
         .collect();
-    let rejected = run.rendered.film.rejected();
+    let rejected = run.film.rejected();
     if rejected > 0 {
         notes
             .push(Diagnostic::warning(format!("{rejected} contributions were not finite and were left out")));
@@ -153,7 +162,7 @@ pub fn write(run: &Run<'_>, to: &Destination) -> Result<Vec<Diagnostic>, OutputE
 fn beauty(run: &Run<'_>) -> Vec<f32> {
     let exposure = run.world.camera.exposure;
     (0..run.settings.window.pixels())
-        .flat_map(|p| (run.rendered.film.mean(p) * exposure).as_vec3().to_array())
+        .flat_map(|p| (run.film.mean(p) * exposure).as_vec3().to_array())
         .collect()
 }
 
@@ -195,7 +204,7 @@ fn aov_layer(aov: Aov, run: &Run<'_>, hits: &[Features], color: Precision) -> La
         Aov::Variance => {
             let exposure = run.world.camera.exposure;
             let variance = |p: usize| {
-                let v = run.rendered.film.variance_of_mean(p) * exposure * exposure;
+                let v = run.film.variance_of_mean(p) * exposure * exposure;
                 // One round says nothing about its error; the file says it with the largest number.
                 v.min(Rgb::splat(f32::MAX.into())).as_vec3()
             };
@@ -205,7 +214,7 @@ fn aov_layer(aov: Aov, run: &Run<'_>, hits: &[Features], color: Precision) -> La
 }
 
 fn metadata(run: &Run<'_>) -> Metadata {
-    let (status, camera) = (&run.rendered.status, &run.world.camera);
+    let (status, camera) = (run.status, &run.world.camera);
     Metadata {
         camera: Some(CameraMatrices::new(&run.camera.0, &run.camera.1, camera.width, camera.height)),
         captured: Some(SystemTime::now()),
@@ -216,7 +225,7 @@ fn metadata(run: &Run<'_>) -> Metadata {
         integrator: run.integrator.into(),
         scene_hash: run.scene_hash.into(),
         noise: status.noise.map(|n| n.typical),
-        complete: run.rendered.reason.is_some(),
+        complete: run.complete,
         shard: None,
         block_variances: block_variances(run),
     }
@@ -227,31 +236,37 @@ fn block_variances(run: &Run<'_>) -> Vec<BlockVariances> {
     let exposure = run.world.camera.exposure;
     let sides = BLOCK_SIDES.iter().map(|side| Some(*side as u32)).chain([None]);
     let level = |(level, side)| {
-        let variances = run.rendered.film.block_variances(level)?;
+        let variances = run.film.block_variances(level)?;
         let stored = |v: Rgb| (v * exposure * exposure).min(Rgb::splat(f32::MAX.into())).as_vec3().to_array();
         Some(BlockVariances { side, values: variances.into_iter().flat_map(stored).collect() })
     };
     sides.enumerate().filter_map(level).collect()
 }
 
-/// Writes numbers about the render as JSON.
+impl Run<'_> {
+    /// Numbers about the render.
+    pub fn stats(&self) -> serde_json::Value {
+        let status = self.status;
+        serde_json::json!({
+            "integrator": self.integrator,
+            "seed": self.settings.seed,
+            "rounds": status.rounds,
+            "samples_per_pixel": status.samples,
+            "seconds": status.elapsed.as_secs_f64(),
+            "noise": status.noise.map(|n| n.typical),
+            "noise_worst_tile": status.noise.map(|n| n.worst_tile),
+            "rejected_contributions": self.film.rejected(),
+            "scene_hash": self.scene_hash,
+            "complete": self.complete,
+        })
+    }
+}
+
+/// Writes the numbers about a render as JSON.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn write_stats(run: &Run<'_>, path: &Path) -> Result<(), OutputError> {
-    let status = &run.rendered.status;
-    let text = serde_json::json!({
-        "integrator": run.integrator,
-        "seed": run.settings.seed,
-        "rounds": status.rounds,
-        "samples_per_pixel": status.samples,
-        "seconds": status.elapsed.as_secs_f64(),
-        "noise": status.noise.map(|n| n.typical),
-        "noise_worst_tile": status.noise.map(|n| n.worst_tile),
-        "rejected_contributions": run.rendered.film.rejected(),
-        "scene_hash": run.scene_hash,
-        "complete": run.rendered.reason.is_some(),
-    })
-    .to_string();
+    let text = run.stats().to_string();
     write_atomically(path, |file| file.write_all(text.as_bytes()))
 }

@@ -13,7 +13,7 @@ use ajar_integrators::{
 };
 use ajar_render::{World, film::Film, world::prepare};
 use ajar_scene::{
-    Camera, Diagnostic, Id, ImportRequest, OutputSettings, RenderSettings, Scene, SceneFile, Severity,
+    Camera, Cause, Diagnostic, Id, ImportRequest, OutputSettings, Overrides, Scene, SceneFile, Severity,
 };
 use glam::DAffine3;
 
@@ -26,33 +26,45 @@ pub struct Loaded {
     pub hash: String,
 }
 
+/// Film size where nothing says another.
+pub const DEFAULT_SIZE: [u32; 2] = [1280, 720];
+
+/// How to load a file.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadOptions<'a> {
+    /// Film size that goes before that of the file; a camera that is added fills it.
+    pub size: Option<[u32; 2]>,
+    /// Changes to what the file says, `key.path=value`.
+    pub set: &'a [String],
+    /// Whether warnings are errors.
+    pub strict: bool,
+    /// Bytes that no importer may exceed.
+    pub memory_limit: u64,
+}
+
 /// Reads any file that some importer knows, or a `scene.toml`, checks it, and adds a camera or light where it has none.
-/// `aspect` is width over height of the film; no importer may hold more than `memory_limit` bytes.
 ///
 /// # Errors
-/// Everything that makes it unfit to render; `strict` counts warnings too.
-pub fn load(path: &Path, aspect: f64, strict: bool, memory_limit: u64) -> Result<Loaded, Vec<Diagnostic>> {
+/// Everything that makes it unfit to render.
+pub fn load(path: &Path, options: &LoadOptions<'_>) -> Result<Loaded, Vec<Diagnostic>> {
+    let memory_limit = options.memory_limit;
     let import =
         |request: &ImportRequest| ajar_importers::import(&ImportRequest { memory_limit, ..request.clone() });
+    let overrides = Overrides::parse(options.set)?;
     let mut file = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
-        ajar_scene::load(path, &import)?
+        ajar_scene::load(path, &overrides, &import)?
     } else {
         let imported = import(&ImportRequest::new(path)).map_err(|d| vec![d])?;
-        SceneFile {
-            scene: imported.scene,
-            render: RenderSettings::default(),
-            output: OutputSettings::default(),
-            diagnostics: imported.diagnostics,
-            files: imported.files,
-        }
+        ajar_scene::load_asset(path, &overrides, imported)?
     };
     file.diagnostics.extend(about(path, file.scene.validate()));
-    let least = if strict { Severity::Warning } else { Severity::Error };
+    let least = if options.strict { Severity::Warning } else { Severity::Error };
     if file.diagnostics.iter().any(|d| d.severity >= least) {
         return Err(file.diagnostics);
     }
     let hash = file.scene.content_hash();
-    let camera = file.scene.add_default_camera(aspect);
+    let [width, height] = options.size.or(file.render.size).unwrap_or(DEFAULT_SIZE).map(f64::from);
+    let camera = file.scene.add_default_camera(width / height);
     let light = file.scene.add_default_light();
     file.diagnostics.extend(about(path, camera.into_iter().chain(light)));
     Ok(Loaded { file, hash })
@@ -82,6 +94,7 @@ pub fn choose_camera(scene: &Scene, name: Option<&str>) -> Result<(Id<Camera>, D
         let names: Vec<_> =
             names.into_iter().map(|(c, n)| if c.is_empty() { n.as_str() } else { c }).collect();
         Diagnostic::error(format!("there is no camera called \"{}\"", name.unwrap_or_default()))
+            .because(Cause::Usage)
             .hint(format!("cameras: {}", names.join(", ")))
     })
 }
@@ -123,35 +136,37 @@ pub struct Rendered {
     pub reason: Option<Reason>,
 }
 
-/// Renders rounds until a rule holds or `cancel` is raised; the round in progress is then dropped.
+/// Renders rounds until a rule holds or `cancel` is raised; the round in progress is then dropped. `each_round` sees the
+/// film after every round.
 pub fn render(
     world: &World,
     integrator: &dyn Integrator,
     settings: &Settings,
     rules: &StopRules,
     cancel: &AtomicBool,
-    mut each_round: impl FnMut(&Status),
+    mut each_round: impl FnMut(&Film, &Status),
 ) -> Rendered {
     let began = Instant::now();
     let brightness = ajar_integrators::brightness(world, settings.max_depth);
     let window = settings.window;
     let mut film = Film::new(window.pixels(), brightness).with_blocks(window.width() as usize);
+    let prepared = integrator.prepare(Context { world, settings, cancel });
     let mut status = Status { rounds: 0, samples: 0, elapsed: Duration::ZERO, noise: None };
     let reason = loop {
         let round = film.round();
         let index = film.rounds() as u32;
-        integrator.render_round(&Context { world, settings, cancel }, index, &round);
+        prepared.render(index, &round);
         if cancel.load(Ordering::Relaxed) {
             break None;
         }
-        film.merge(&round, integrator.scale(settings));
+        film.merge(&round, prepared.scale());
         status.rounds = film.rounds();
         status.samples = status.rounds * u64::from(settings.samples_per_round);
         status.elapsed = began.elapsed();
         if is_noise_check(status.rounds) {
             status.noise = noise(&film, settings.window);
         }
-        each_round(&status);
+        each_round(&film, &status);
         if let Some(reason) = rules.check(status.rounds, status.elapsed, status.noise) {
             break Some(reason);
         }

@@ -54,7 +54,9 @@ fn files(folder: &str) -> Vec<String> {
             let (name, kind) = (entry.file_name(), entry.file_type().unwrap());
             let path = folder.join(&name);
             let name = name.to_string_lossy();
-            if kind.is_dir() && !MADE.contains(&name.as_ref()) && !name.ends_with(".egg-info") {
+            if MADE.contains(&name.as_ref()) || name.ends_with(".egg-info") {
+                continue;
+            } else if kind.is_dir() {
                 open.push(path);
             } else if kind.is_file() {
                 found.push(path.to_string_lossy().replace('\\', "/"));

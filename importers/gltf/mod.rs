@@ -29,7 +29,7 @@ mod uri;
 
 use std::{collections::HashSet, path::PathBuf};
 
-use ajar_scene::{Diagnostic, Feature, ImportRequest, Imported, Importer, Scene};
+use ajar_scene::{Cause, Diagnostic, Feature, ImportRequest, Imported, Importer, Scene};
 use gltf::json::Root;
 
 use crate::report::Report;
@@ -80,6 +80,7 @@ impl Context<'_> {
         let limit = self.request.memory_limit;
         self.budget = self.budget.checked_sub(bytes).ok_or_else(|| {
             Diagnostic::error(format!("needs more memory than the limit of {limit} bytes"))
+                .because(Cause::Resource)
                 .element(element)
                 .hint("raise the memory limit of the import if the file is to be trusted")
         })?;

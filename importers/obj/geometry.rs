@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, path::Path};
 
-use ajar_scene::Diagnostic;
+use ajar_scene::{Cause, Diagnostic};
 use glam::{Vec2, Vec3};
 
 use super::lines::{Line, Lines, quote};
@@ -162,7 +162,8 @@ impl Parser<'_> {
         // A corner takes two bytes of text or more: checked before they are stored.
         let asked = (self.geometry.corners.len() + line.text.len() / 2) as u64 * CORNER_BYTES;
         if asked > self.memory_limit {
-            return Err(line.error(&line.text, "the faces up to here need more than the memory limit"));
+            let error = line.error(&line.text, "the faces up to here need more than the memory limit");
+            return Err(error.because(Cause::Resource));
         }
         let first = self.geometry.corners.len();
         for word in line.words() {

@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, fs::File, io::Read, path::Path};
 
-use ajar_scene::Diagnostic;
+use ajar_scene::{Cause, Diagnostic};
 
 /// One statement, with the line it starts on.
 pub(super) struct Line<'a> {
@@ -120,7 +120,8 @@ pub(super) fn read(path: &Path, limit: u64) -> Result<(String, bool), Diagnostic
         .read_to_end(&mut bytes)
         .map_err(unreadable)?;
     if bytes.len() as u64 > limit {
-        return Err(fail(format!("is larger than the memory limit of {limit} bytes")));
+        let error = fail(format!("is larger than the memory limit of {limit} bytes"));
+        return Err(error.because(Cause::Resource));
     }
     if bytes.starts_with(b"\xFE\xFF") || bytes.starts_with(b"\xFF\xFE") {
         return Err(fail("is UTF-16 text".to_owned()).at(1, 1).hint("save it as UTF-8"));

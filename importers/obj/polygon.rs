@@ -45,8 +45,11 @@ struct Ring {
     points: Vec<DVec2>,
     next: Vec<u32>,
     previous: Vec<u32>,
-    /// Corners that may lie in the way of an ear: reflex ones and those in line with their neighbours.
-    reflex: Vec<u32>,
+    /// Whether a corner may lie in the way of an ear: it is reflex or in line with its neighbours.
+    reflex: Vec<bool>,
+    /// The corners that were reflex at first, by x: an ear asks only those between its ends. Rounding makes a third of the
+    /// corners of a finely divided circle reflex, and each of them is far from all but a few ears.
+    by_x: Vec<u32>,
 }
 
 impl Ring {
@@ -54,8 +57,11 @@ impl Ring {
         let n = points.len() as u32;
         let next = (0..n).map(|i| (i + 1) % n).collect();
         let previous = (0..n).map(|i| (i + n - 1) % n).collect();
-        let mut ring = Self { points, next, previous, reflex: Vec::new() };
-        ring.reflex = (0..n).filter(|&i| ring.turn(i) <= 0.0).collect();
+        let mut ring = Self { points, next, previous, reflex: Vec::new(), by_x: Vec::new() };
+        ring.reflex = (0..n).map(|i| ring.turn(i) <= 0.0).collect();
+        ring.by_x = (0..n).filter(|&i| ring.reflex[i as usize]).collect();
+        let Self { points, by_x, .. } = &mut ring;
+        by_x.sort_by(|&i, &j| points[i as usize].x.total_cmp(&points[j as usize].x));
         ring
     }
 
@@ -69,22 +75,29 @@ impl Ring {
         area(self.points[before as usize], self.points[i as usize], self.points[after as usize])
     }
 
-    /// Whether no corner lies in or on the triangle at corner `i`. Corners at the place of one of its own are let
-    /// through: polygons with holes are written with a seam that is walked twice.
-    fn is_empty(&self, i: u32) -> bool {
+    /// Whether no corner lies in or on the triangle at corner `i`, and how many were asked. Corners at the place of one of
+    /// its own are let through: polygons with holes are written with a seam that is walked twice.
+    fn is_empty(&self, i: u32) -> (bool, usize) {
         let (before, after) = self.neighbours(i);
         let [a, b, c] = [before, i, after].map(|i| self.points[i as usize]);
-        !self.reflex.iter().any(|&r| {
+        let x = |&r: &u32| self.points[r as usize].x;
+        let (low, high) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
+        let first = self.by_x.partition_point(|r| x(r) < low);
+        let last = self.by_x.partition_point(|r| x(r) <= high);
+        let inside = |r: u32| {
             let p = self.points[r as usize];
             let apart = p != a && p != b && p != c;
             apart && area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0
-        })
+        };
+        let near = &self.by_x[first..last];
+        (!near.iter().any(|&r| self.reflex[r as usize] && inside(r)), near.len())
     }
 
     fn clip(mut self, out: &mut Vec<[u32; 3]>) -> bool {
         let mut left = self.points.len();
         // Quadratic time is fine for polygons that people draw; a hostile file must not get more.
         let mut tests = (1_000_000 + 4000 * left).min(200_000_000);
+        let convex = self.by_x.is_empty();
         let (mut simple, mut i, mut tried) = (true, 1, 0);
         while left >= 3 {
             // Each round without success asks for less: an ear, a corner without area, any corner that turns left, any.
@@ -93,8 +106,9 @@ impl Ring {
             let turn = self.turn(i);
             let fits = match rounds {
                 0 if turn > 0.0 => {
-                    tests = tests.saturating_sub(self.reflex.len() + 1);
-                    self.is_empty(i)
+                    let (empty, asked) = self.is_empty(i);
+                    tests = tests.saturating_sub(asked);
+                    empty
                 }
                 0 => false,
                 1 => turn == 0.0,
@@ -107,16 +121,14 @@ impl Ring {
                 if turn != 0.0 {
                     out.push([before, i, after]);
                 }
-                tests = tests.saturating_sub(self.reflex.len());
                 self.unlink(i);
-                if tests == 0 {
-                    self.reflex.clear();
-                }
                 (left, tried) = (left - 1, 0);
+                // A fan where the polygon is convex; else every other corner, which keeps triangles short.
+                i = if convex { after } else { self.next[after as usize] };
             } else {
                 tried += 1;
+                i = after;
             }
-            i = after;
         }
         simple
     }
@@ -125,10 +137,11 @@ impl Ring {
         let (before, after) = self.neighbours(i);
         self.next[before as usize] = after;
         self.previous[after as usize] = before;
-        let mut reflex = std::mem::take(&mut self.reflex);
+        self.reflex[i as usize] = false;
         // Clipping only ever straightens the neighbours.
-        reflex.retain(|&r| r != i && ((r != before && r != after) || self.turn(r) <= 0.0));
-        self.reflex = reflex;
+        for corner in [before, after] {
+            self.reflex[corner as usize] &= self.turn(corner) <= 0.0;
+        }
     }
 }
 
@@ -212,6 +225,24 @@ mod tests {
                 assert!(simple && count == polygon.len() - 2, "{n}: {count}");
                 assert!((sum / whole - 1.0).abs() < 1e-5, "{n}: {sum} {whole}");
             }
+        }
+    }
+
+    /// Rounding to f32 makes a third of the corners reflex.
+    #[test]
+    fn circles_of_many_corners_are_whole() {
+        for n in [100_000_u32, 100_001] {
+            let circle: Vec<_> = (0..n)
+                .map(|i| (std::f64::consts::TAU * f64::from(i) / f64::from(n)).sin_cos())
+                .map(|(s, c)| Vec3::new(c as f32 + 3.0, s as f32, 0.0))
+                .collect();
+            let normal = vector_area(&circle);
+            let mut out = Vec::new();
+            assert!(triangulate(&circle, normal, &mut out) && out.len() > 90_000, "{n}: {}", out.len());
+            let areas = out.iter().map(|t| vector_area(&t.map(|i| circle[i as usize])).z);
+            assert!(areas.clone().all(|area| area > 0.0), "{n}: a triangle is turned over");
+            let (sum, whole) = (areas.sum::<f64>(), normal.z);
+            assert!((sum / whole - 1.0).abs() < 1e-9, "{n}: {sum} {whole}");
         }
     }
 

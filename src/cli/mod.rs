@@ -1,21 +1,20 @@
 //! The command line: one file a command. Exit codes as in [`Exit`].
 
 mod arguments;
+mod diff;
 mod exit;
 mod formats;
+mod input;
 mod inspect;
+mod job;
+mod log;
 mod progress;
 mod render;
 mod signals;
 mod validate;
 
-use std::{
-    cmp::Reverse,
-    io::{IsTerminal, Write},
-    process::ExitCode,
-};
+use std::{io::Write, process::ExitCode};
 
-use ajar_scene::{Diagnostic, Severity};
 use clap::{Parser, Subcommand};
 
 pub use exit::Exit;
@@ -31,6 +30,9 @@ const EXIT_CODES: &str = "Exit codes: 0 ok, 1 render failed, 2 usage, 3 asset or
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// How messages and progress are written
+    #[arg(long, global = true, value_name = "FORMAT", value_enum, default_value_t)]
+    log_format: log::Format,
 }
 
 #[derive(Debug, Subcommand)]
@@ -43,6 +45,8 @@ enum Command {
     Validate(validate::Args),
     /// List the file formats that can be read, and what of each is supported
     Formats(formats::Args),
+    /// Compare an image with a reference, aware of noise
+    Diff(diff::Args),
 }
 
 /// Runs the program on its arguments.
@@ -56,10 +60,11 @@ pub fn run() -> ExitCode {
         }
     };
     let exit = match cli.command {
-        Command::Render(args) => render::run(&args),
-        Command::Inspect(args) => inspect::run(&args),
-        Command::Validate(args) => validate::run(&args),
+        Command::Render(args) => render::run(&args, cli.log_format),
+        Command::Inspect(args) => inspect::run(&args, cli.log_format),
+        Command::Validate(args) => validate::run(&args, cli.log_format),
         Command::Formats(args) => formats::run(&args),
+        Command::Diff(args) => diff::run(&args),
     };
     exit.into()
 }
@@ -68,26 +73,4 @@ pub fn run() -> ExitCode {
 fn print(text: &str) {
     // Nobody reads it if the pipe is closed.
     let _ = writeln!(std::io::stdout(), "{text}");
-}
-
-/// Messages shown at most: a broken file can cause one a line.
-const MOST_MESSAGES: usize = 100;
-
-/// Prints messages for people, those of `least` severity or worse. Where there are too many, the worst are kept.
-fn print_diagnostics(diagnostics: &[Diagnostic], least: Severity) {
-    let mut shown: Vec<_> = diagnostics.iter().filter(|d| d.severity >= least).collect();
-    if shown.len() > MOST_MESSAGES {
-        shown.sort_by_key(|d| Reverse(d.severity));
-    }
-    let mut text: String = shown.iter().take(MOST_MESSAGES).map(|d| format!("{d}\n")).collect();
-    if shown.len() > MOST_MESSAGES {
-        text.push_str(&format!("… and {} more messages\n", shown.len() - MOST_MESSAGES));
-    }
-    // As above.
-    let _ = std::io::stderr().write_all(text.as_bytes());
-}
-
-/// Whether progress may redraw its line.
-fn interactive() -> bool {
-    std::io::stderr().is_terminal()
 }

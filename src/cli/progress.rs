@@ -4,7 +4,9 @@ use std::time::{Duration, Instant};
 
 use ajar_integrators::stop::StopRules;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::{Value, json};
 
+use super::log::Format;
 use crate::session::Status;
 
 /// Without a terminal, a plain line this often.
@@ -15,18 +17,19 @@ pub(super) struct Progress {
     bar: Option<ProgressBar>,
     last: Instant,
     quiet: bool,
+    log: Format,
 }
 
 impl Progress {
-    pub(super) fn new(quiet: bool) -> Self {
-        let bar = (!quiet && super::interactive()).then(|| {
+    pub(super) fn new(quiet: bool, log: Format) -> Self {
+        let bar = (!quiet && log.interactive()).then(|| {
             let bar = ProgressBar::new(1000);
             if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}") {
                 bar.set_style(style.progress_chars("━╸ "));
             }
             bar
         });
-        Self { bar, last: Instant::now(), quiet }
+        Self { bar, last: Instant::now(), quiet, log }
     }
 
     /// Shows the state after a round.
@@ -38,7 +41,7 @@ impl Progress {
             bar.set_message(text);
         } else if !self.quiet && self.last.elapsed() >= PLAIN_INTERVAL {
             self.last = Instant::now();
-            eprintln!("{:3.0} %  {text}", done * 100.0);
+            self.log.progress(&format!("{:3.0} %  {text}", done * 100.0), &numbers(status, done));
         }
     }
 
@@ -67,13 +70,26 @@ fn describe(status: &Status, done: f64) -> String {
         }
         None => "noise not yet known".into(),
     };
-    let left = if done > 0.0 && done < 1.0 {
-        let seconds = status.elapsed.as_secs_f64() * (1.0 / done - 1.0);
-        format!(", about {} left", duration(Duration::from_secs_f64(seconds)))
-    } else {
-        String::new()
-    };
+    let left =
+        time_left(status, done).map_or(String::new(), |left| format!(", about {} left", duration(left)));
     format!("round {}, {} samples a pixel, {noise}{left}", status.rounds, status.samples)
+}
+
+fn time_left(status: &Status, done: f64) -> Option<Duration> {
+    let seconds = status.elapsed.as_secs_f64() * (1.0 / done - 1.0);
+    Duration::try_from_secs_f64(seconds).ok().filter(|_| done > 0.0 && done < 1.0)
+}
+
+/// The same for programs.
+fn numbers(status: &Status, done: f64) -> Value {
+    json!({
+        "done": done,
+        "rounds": status.rounds,
+        "samples_per_pixel": status.samples,
+        "seconds": status.elapsed.as_secs_f64(),
+        "seconds_left": time_left(status, done).map(|left| left.as_secs_f64()),
+        "noise": status.noise.map(|noise| noise.typical),
+    })
 }
 
 /// `45 s`, `3 min 20 s`, `2 h 5 min`.

@@ -1,6 +1,6 @@
 //! What the camera sees first: the auxiliary images (albedo, normals, depth, position, texture coordinates, ids).
 
-use ajar_render::{World, path::Kind, sampler::Sobol};
+use ajar_render::{World, path::Kind, sampler::Sequence};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -8,8 +8,8 @@ use crate::Window;
 
 /// Eye samples a pixel for what is averaged.
 const SAMPLES: u32 = 16;
-/// Round number of their random numbers, which no image uses.
-const ROUND: u32 = u32::MAX - 1;
+/// Their stream of samples, which no image uses.
+const STREAM: u32 = u32::MAX - 1;
 
 /// First-hit features of one pixel. Albedo and normals are averages over the pixel (0 where nothing is hit); the rest is
 /// taken at its centre.
@@ -48,8 +48,9 @@ fn pixel(world: &World, x: u32, y: u32) -> Features {
     let mut found = at_centre(world, corner + 0.5);
     let index = u64::from(y) * u64::from(world.camera.width) + u64::from(x);
     let (mut albedo, mut normal, mut geometric, mut hits) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, 0.0);
+    let sequence = Sequence::new(0, STREAM, index);
     for sample in 0..SAMPLES {
-        let mut sobol = Sobol::new(0, ROUND, index, sample);
+        let mut sobol = sequence.sample(sample.into());
         let raster = corner + DVec2::from_array(sobol.next_2d());
         let ray = world.camera.ray(raster, sobol.next_2d());
         let seed = (sobol.next_1d() * 4_294_967_296.0) as u32;

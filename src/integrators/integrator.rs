@@ -4,7 +4,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use ajar_render::{World, film::RoundFilm};
 
-use crate::{bdpt::Bdpt, path::PathTracer};
+use crate::{
+    bdpt::Bdpt,
+    mlt::{Ajar, Mlt},
+    path::PathTracer,
+};
 
 /// Everything an image depends on besides the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +21,14 @@ pub struct Settings {
     pub samples_per_round: u32,
     /// Pixels to render.
     pub window: Window,
+}
+
+impl Settings {
+    /// Numbers of the samples that a pixel gets in `round`: rounds go on where the one before ends.
+    pub fn samples(&self, round: u32) -> std::ops::Range<u64> {
+        let (round, samples) = (u64::from(round), u64::from(self.samples_per_round));
+        round * samples..(round + 1) * samples
+    }
 }
 
 /// A rectangle of pixels, the end excluded.
@@ -84,17 +96,37 @@ pub trait Integrator: Sync {
     /// Longest path that it can build, in edges.
     fn max_depth(&self) -> usize;
 
+    /// Gets ready to render: whatever all rounds share. Depends on world and settings alone.
+    fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a>;
+}
+
+/// An integrator at work.
+pub trait Rounds {
     /// Adds one round to an empty film of the window. The round's pixel values are the deposits times
-    /// [`Integrator::scale`]. If the context was cancelled meanwhile the film is worthless.
-    fn render_round(&self, cx: &Context<'_>, round: u32, film: &RoundFilm);
+    /// [`Rounds::scale`]. If the context was cancelled meanwhile the film is worthless.
+    fn render(&self, round: u32, film: &RoundFilm);
 
     /// What one deposit counts in the round's pixel value.
-    fn scale(&self, settings: &Settings) -> f64 {
-        1.0 / f64::from(settings.samples_per_round)
+    fn scale(&self) -> f64;
+
+    /// What the rounds so far tell about themselves.
+    fn report(&self) -> Report {
+        Report::default()
     }
+}
+
+/// What rounds tell about themselves.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// For people: problems with the image.
+    pub warnings: Vec<String>,
+    /// For people: how it went, a line each.
+    pub lines: Vec<String>,
+    /// For programs: names and numbers.
+    pub numbers: Vec<(String, f64)>,
 }
 
 /// All integrators.
 pub fn integrators() -> &'static [&'static dyn Integrator] {
-    &[&PathTracer, &Bdpt]
+    &[&Ajar { always: false }, &PathTracer, &Bdpt, &Mlt]
 }

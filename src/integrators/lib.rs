@@ -7,10 +7,11 @@
 pub mod bdpt;
 pub mod features;
 mod integrator;
+pub mod mlt;
 pub mod path;
 mod pilot;
 pub mod stats;
 pub mod stop;
 
-pub use integrator::{Context, Integrator, Settings, Window, integrators};
+pub use integrator::{Context, Integrator, Report, Rounds, Settings, Window, integrators};
 pub use pilot::brightness;

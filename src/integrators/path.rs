@@ -6,12 +6,12 @@ use ajar_render::{
     film::RoundFilm,
     math::Rgb,
     path::{Edge, ROULETTE_DEPTH, Step, Vertex},
-    sampler::Sobol,
+    sampler::{Sequence, Sobol},
 };
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::{Context, Integrator};
+use crate::{Context, Integrator, Rounds};
 
 /// The path tracer: one light sample and one continuation a vertex, weighed by the balance heuristic.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,20 @@ impl Integrator for PathTracer {
         4096
     }
 
-    fn render_round(&self, cx: &Context<'_>, round: u32, film: &RoundFilm) {
+    fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a> {
+        Box::new(PathTracerRounds(cx))
+    }
+}
+
+struct PathTracerRounds<'a>(Context<'a>);
+
+impl Rounds for PathTracerRounds<'_> {
+    fn scale(&self) -> f64 {
+        1.0 / f64::from(self.0.settings.samples_per_round)
+    }
+
+    fn render(&self, round: u32, film: &RoundFilm) {
+        let cx = &self.0;
         let window = cx.settings.window;
         (window.y0..window.y1).into_par_iter().for_each(|y| {
             if cx.cancelled() {
@@ -38,9 +51,10 @@ impl Integrator for PathTracer {
             }
             for x in window.x0..window.x1 {
                 let pixel = u64::from(y) * u64::from(cx.world.camera.width) + u64::from(x);
+                let sequence = Sequence::new(cx.settings.seed, 0, pixel);
                 let mut sum = Rgb::ZERO;
-                for sample in 0..cx.settings.samples_per_round {
-                    let mut sampler = Sobol::new(cx.settings.seed, round, pixel, sample);
+                for sample in cx.settings.samples(round) {
+                    let mut sampler = sequence.sample(sample);
                     let [dx, dy] = sampler.next_2d();
                     let raster = DVec2::new(f64::from(x) + dx, f64::from(y) + dy);
                     sum += radiance(cx.world, cx.settings.max_depth, raster, &mut sampler);
@@ -54,8 +68,8 @@ impl Integrator for PathTracer {
 }
 
 /// State of a walk from the eye that is about to leave `from`.
-struct Walk {
-    from: Vertex,
+struct Walk<'v> {
+    from: &'v mut Vertex,
     origin: DVec3,
     direction: DVec3,
     throughput: Rgb,
@@ -67,12 +81,57 @@ struct Walk {
     albedo: f64,
 }
 
+/// Watches a walk of the path tracer.
+pub trait Visitor {
+    /// The walk goes on from `vertex`, the lens first; its mode is set.
+    fn leave(&mut self, _vertex: &Vertex) {}
+
+    /// A path that carries light is complete.
+    fn found(&mut self, path: &Found<'_>);
+}
+
+/// A complete path of the path tracer: the vertices that its walk left, and these.
+#[derive(Clone, Copy)]
+pub struct Found<'a> {
+    /// f over the density of both ways in which the path tracer makes the path, met and sampled lights.
+    pub value: Rgb,
+    /// Edges.
+    pub edges: usize,
+    /// The light end.
+    pub x0: &'a Vertex,
+    /// The vertex that saw it by next-event estimation; `None` if the walk met it.
+    pub seen_from: Option<&'a Vertex>,
+}
+
+struct Sum(Rgb);
+
+impl Visitor for Sum {
+    fn found(&mut self, path: &Found<'_>) {
+        self.0 += path.value;
+    }
+}
+
 /// Estimates the radiance that reaches `raster` over paths of at most `max_depth` edges.
 pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut Sobol) -> Rgb {
+    let mut sum = Sum(Rgb::ZERO);
+    walk(world, max_depth, raster, sampler, &mut sum);
+    sum.0
+}
+
+/// Walks from the lens; every contribution to the radiance at `raster` goes to `visitor`. Returns the lens point.
+pub fn walk(
+    world: &World,
+    max_depth: usize,
+    raster: DVec2,
+    sampler: &mut Sobol,
+    visitor: &mut impl Visitor,
+) -> [f64; 2] {
     let lens = sampler.next_2d();
     let ray = world.camera.ray(raster, lens);
+    let (mut from, mut here) = (world.lens_vertex(ray.origin), world.lens_vertex(ray.origin));
+    let mut here = &mut here;
     let mut walk = Walk {
-        from: world.lens_vertex(ray.origin),
+        from: &mut from,
         origin: ray.origin,
         direction: ray.direction,
         throughput: Rgb::ONE,
@@ -80,40 +139,44 @@ pub fn radiance(world: &World, max_depth: usize, raster: DVec2, sampler: &mut So
         competes: false,
         albedo: 1.0,
     };
-    let mut sum = Rgb::ZERO;
+    visitor.leave(walk.from);
     for edges in 1..=max_depth {
         let seed = if world.has_alpha() { (sampler.next_1d() * 4_294_967_296.0) as u32 } else { 0 };
-        let Some(here) = world.trace(walk.origin, walk.direction, edges == 1, seed) else {
+        if !world.trace_into(walk.origin, walk.direction, edges == 1, seed, here) {
             if let Some(sky) = world.lights.surroundings(walk.direction) {
-                sum += walk.throughput * met_light(world, &sky, &walk);
+                met_light(world, &sky, &walk, edges, visitor);
             }
             break;
-        };
-        let Some(edge) = Edge::between(&here, &walk.from, world.shortest_edge) else { break };
-        walk.throughput *= world.absorption(&here, &walk.from, &edge);
+        }
+        let Some(edge) = Edge::between(here, walk.from, world.shortest_edge) else { break };
+        walk.throughput *= world.absorption(here, walk.from, &edge);
         if here.emitter != Vertex::NO_EMITTER {
-            sum += walk.throughput * met_light(world, &here, &walk);
+            met_light(world, here, &walk, edges, visitor);
         }
         if edges == max_depth {
             break;
         }
         let w_e = -walk.direction;
-        let survival = walk.survival(&here, edges);
-        let next_event = (sampler.next_1d(), sampler.next_2d());
+        let survival = walk.survival(here, edges);
+        let [u, v, choice, u_survival] = sampler.next_4d();
+        let next_event = (choice, [u, v]);
         if here.bsdf.has_smooth() {
-            sum += walk.throughput * next_event_estimate(world, &here, w_e, survival, next_event);
+            let limit = Limit { edges: edges + 1, survival };
+            next_event_estimate(world, here, &walk, limit, next_event, visitor);
         }
-        let (u_lobe, u) = (sampler.next_1d(), sampler.next_2d());
-        let Some(step) = here.scatter(Side::TowardLight, w_e, u_lobe, u) else { break };
-        if survival < 1.0 && sampler.next_1d() >= survival {
+        let [u, v, u_lobe, _] = sampler.next_4d();
+        let Some(step) = here.scatter(Side::TowardLight, w_e, u_lobe, [u, v]) else { break };
+        if u_survival >= survival {
             break;
         }
         walk.go_on(here, &step, survival);
+        std::mem::swap(&mut walk.from, &mut here);
+        visitor.leave(walk.from);
     }
-    sum
+    lens
 }
 
-impl Walk {
+impl Walk<'_> {
     /// Probability of surviving Russian roulette at `here`: first the albedo of the whole walk, later that of the surface
     /// alone, which keeps throughputs near 1. A function of the places visited, whatever light was found.
     fn survival(&mut self, here: &Vertex, edges: usize) -> f64 {
@@ -123,48 +186,65 @@ impl Walk {
         if edges == ROULETTE_DEPTH { self.albedo.clamp(0.05, 0.95) } else { here.survival(edges) }
     }
 
-    fn go_on(&mut self, mut from: Vertex, step: &Step, survival: f64) {
+    /// Leaves `from`, which is yet to become the vertex that it is named after.
+    fn go_on(&mut self, from: &mut Vertex, step: &Step, survival: f64) {
         from.mode = step.mode;
         self.origin = from.leave(step.direction);
         self.direction = step.direction;
         self.throughput *= step.weight / survival;
         self.density = step.density * survival;
         self.competes = step.mode == Mode::Smooth;
-        self.from = from;
     }
 }
 
-/// Radiance of a light that the walk met by chance, weighed against next-event estimation.
-fn met_light(world: &World, x0: &Vertex, walk: &Walk) -> Rgb {
-    let radiance = world.emitted(x0, -walk.direction);
-    if !walk.competes || radiance == Rgb::ZERO {
-        return radiance;
+/// A light that the walk met by chance, weighed against next-event estimation.
+fn met_light(world: &World, x0: &Vertex, walk: &Walk<'_>, edges: usize, visitor: &mut impl Visitor) {
+    let mut value = walk.throughput * world.emitted(x0, -walk.direction);
+    if value == Rgb::ZERO {
+        return;
     }
-    let Some(edge) = Edge::between(x0, &walk.from, world.shortest_edge) else { return Rgb::ZERO };
-    let met = edge.density(walk.density, &walk.from, x0, false);
-    radiance * (met / (met + world.lights.density(x0)))
+    if walk.competes {
+        let Some(edge) = Edge::between(x0, walk.from, world.shortest_edge) else { return };
+        let met = edge.density(walk.density, walk.from, x0, false);
+        let hidden = if world.has_alpha() { world.coverage(x0) * world.passed(x0, walk.from) } else { 1.0 };
+        // Where next-event estimation sees the light half covered it is half as good.
+        value *= met * hidden / (met * hidden + world.lights.density(x0));
+    }
+    visitor.found(&Found { value, edges, x0, seen_from: None });
+}
+
+/// Edges of the paths that end at a vertex, and the probability that the walk goes on from it.
+#[derive(Clone, Copy)]
+struct Limit {
+    edges: usize,
+    survival: f64,
 }
 
 /// One light sample for `here`, weighed against meeting the same light by chance.
 fn next_event_estimate(
     world: &World,
     here: &Vertex,
-    w_e: DVec3,
-    survival: f64,
+    walk: &Walk<'_>,
+    Limit { edges, survival }: Limit,
     (choice, u): (f64, [f64; 2]),
-) -> Rgb {
-    let Some((x0, density)) = world.lights.sample(choice, u) else { return Rgb::ZERO };
-    let Some(edge) = Edge::between(&x0, here, world.shortest_edge) else { return Rgb::ZERO };
+    visitor: &mut impl Visitor,
+) {
+    let Some((x0, density)) = world.lights.sample(choice, u) else { return };
+    let Some(edge) = Edge::between(&x0, here, world.shortest_edge) else { return };
     let geometry = x0.projected(edge.to_eye) * here.projected(edge.to_eye) * edge.falloff;
-    let scattering = here.evaluate(-edge.to_eye, w_e);
+    let scattering = here.evaluate(-edge.to_eye, -walk.direction);
     let value = scattering.value * world.emitted(&x0, edge.to_eye) * (geometry / density);
     if value == Rgb::ZERO {
-        return value;
+        return;
     }
-    let value = value * world.transmittance(&x0, here, &edge);
-    if value == Rgb::ZERO || !x0.can_be_met() {
-        return value * world.coverage(&x0);
+    let hidden = world.passed(&x0, here) * world.coverage(&x0);
+    if hidden <= 0.0 {
+        return;
     }
-    let met = edge.density(scattering.toward_light * survival, here, &x0, false);
-    value * (world.coverage(&x0) * density / (density + met))
+    let mut value = walk.throughput * value * world.absorption(&x0, here, &edge) * hidden;
+    if x0.can_be_met() {
+        let met = edge.density(scattering.toward_light * survival, here, &x0, false);
+        value *= density / (density + met * hidden);
+    }
+    visitor.found(&Found { value, edges, x0: &x0, seen_from: Some(here) });
 }

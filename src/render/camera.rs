@@ -119,6 +119,7 @@ impl Camera {
     }
 
     /// The ray of a raster position (pixels) through the lens point `lens` ∈ [0, 1)².
+    #[inline]
     pub fn ray(&self, raster: DVec2, lens: [f64; 2]) -> CameraRay {
         let image = self.image_point(raster);
         let (from, to) = match self.lens {

@@ -29,11 +29,13 @@ impl Discrete {
 
     /// Index, its probability, and what is left of `u` in [0, 1), uniform given the index. `None` if all weights are
     /// zero.
+    #[inline]
     pub fn sample(&self, u: f64) -> Option<(usize, f64, f64)> {
         (self.total > 0.0).then(|| sample_cdf(&self.cdf, u))
     }
 
     /// Probability of `index`, 0 beyond the end.
+    #[inline]
     pub fn pmf(&self, index: usize) -> f64 {
         pmf_cdf(&self.cdf, index)
     }
@@ -152,6 +154,7 @@ fn accumulate(weights: &[f64], cdf: &mut [f64]) -> f64 {
     total
 }
 
+#[inline]
 fn sample_cdf(cdf: &[f64], u: f64) -> (usize, f64, f64) {
     // The last entry not above u starts the interval: empty intervals are never chosen.
     let u = u.clamp(0.0, BELOW_ONE);
@@ -160,6 +163,7 @@ fn sample_cdf(cdf: &[f64], u: f64) -> (usize, f64, f64) {
     (index, pmf, ((u - cdf[index]) / pmf).clamp(0.0, BELOW_ONE))
 }
 
+#[inline]
 fn pmf_cdf(cdf: &[f64], index: usize) -> f64 {
     cdf.get(index + 1).map_or(0.0, |sum| sum - cdf[index])
 }

@@ -80,9 +80,13 @@ impl Material {
         self.source.double_sided
     }
 
-    /// How it scatters at `place`.
-    pub fn bsdf(&self, textures: &Textures, place: &impl Place) -> Bsdf {
-        self.constant.unwrap_or_else(|| self.build(textures, place))
+    /// Makes `bsdf` how it scatters at `place`.
+    #[inline]
+    pub fn set_bsdf(&self, textures: &Textures, place: &impl Place, bsdf: &mut Bsdf) {
+        match &self.constant {
+            Some(constant) => bsdf.set(constant),
+            None => *bsdf = self.build(textures, place),
+        }
     }
 
     /// Emitted radiance at `place`, of the sides that emit.

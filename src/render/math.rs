@@ -18,6 +18,7 @@ pub struct Frame {
 
 impl Frame {
     /// Some basis around the unit vector `z` (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+    #[inline]
     pub fn from_z(z: DVec3) -> Self {
         let sign = 1f64.copysign(z.z);
         let a = -1.0 / (sign + z.z);
@@ -41,11 +42,13 @@ impl Frame {
     }
 
     /// World to local.
+    #[inline]
     pub fn to_local(&self, w: DVec3) -> DVec3 {
         DVec3::new(w.dot(self.x), w.dot(self.y), w.dot(self.z))
     }
 
     /// Local to world.
+    #[inline]
     pub fn to_world(&self, w: DVec3) -> DVec3 {
         self.x * w.x + self.y * w.y + self.z * w.z
     }

@@ -10,6 +10,14 @@ pub enum Purpose {
     Bidirectional = 2,
     /// Scrambles and low bits of low-discrepancy points.
     Sobol = 3,
+    /// Bidirectional samples that seed Markov chains.
+    Bootstrap = 4,
+    /// Which candidates become seeds.
+    Resampling = 5,
+    /// Markov chains.
+    Chain = 6,
+    /// Light seen directly.
+    Direct = 7,
     /// Tests.
     Test = 99,
 }
@@ -68,6 +76,22 @@ fn philox(mut c: [u32; 4], mut k: [u32; 2]) -> [u32; 4] {
         k = [k[0].wrapping_add(0x9E37_79B9), k[1].wrapping_add(0xBB67_AE85)];
     }
     c
+}
+
+/// The next number of a cheap stream whose whole state is a seed (Steele, Lea & Flood 2014, "Fast Splittable Pseudorandom
+/// Number Generators").
+#[inline]
+pub(crate) fn splitmix(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    mix(*state)
+}
+
+/// A permutation of 64 bits in which each depends on all (Stafford's variant 13 of MurmurHash3's finalizer).
+#[inline]
+pub(crate) fn mix(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    x ^ (x >> 31)
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, PI, TAU};
 use glam::{DVec2, DVec3};
 
 /// Concentric map to the unit disc (Shirley and Chiu 1997), uniform in area: density 1/π.
+#[inline]
 pub fn square_to_disc(u: [f64; 2]) -> DVec2 {
     let (a, b) = (2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
     if a == 0.0 && b == 0.0 {
@@ -47,6 +48,7 @@ fn inside(u: f64) -> f64 {
 }
 
 /// Direction around +Z with density [`cosine_hemisphere_pdf`] in solid angle (Malley's method).
+#[inline]
 pub fn square_to_cosine_hemisphere(u: [f64; 2]) -> DVec3 {
     let p = square_to_disc(u);
     p.extend((1.0 - p.length_squared()).max(0.0).sqrt())
@@ -110,6 +112,7 @@ pub fn cone_pdf(cos_max: f64) -> f64 {
 
 /// Barycentric weights `[b1, b2]` of a triangle's second and third corner (the first has `1 − b1 − b2`), uniform in area:
 /// density 1/area.
+#[inline]
 pub fn square_to_triangle(u: [f64; 2]) -> [f64; 2] {
     let root = u[0].sqrt();
     [1.0 - root, u[1] * root]

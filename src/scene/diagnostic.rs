@@ -2,7 +2,7 @@
 
 use std::{fmt, path::PathBuf};
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -16,12 +16,31 @@ pub enum Severity {
     Error,
 }
 
+/// What has to change before it works; programs tell it by the exit code.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Cause {
+    /// The file or the scene.
+    #[default]
+    Asset,
+    /// What the user asked for.
+    Usage,
+    /// A limit on memory or size.
+    Resource,
+    /// The machine: a file that cannot be written, a thread that cannot be started.
+    System,
+}
+
 /// One message about a file or a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
+    /// What has to change.
+    #[serde(default)]
+    pub cause: Cause,
     /// The file it is about.
+    #[serde(serialize_with = "lossy")]
     pub file: Option<PathBuf>,
     /// Line and column, both from 1.
     pub place: Option<(usize, usize)>,
@@ -35,7 +54,8 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     fn new(severity: Severity, message: impl Into<String>) -> Self {
-        Self { severity, file: None, place: None, element: None, message: message.into(), hint: None }
+        let cause = Cause::default();
+        Self { severity, cause, file: None, place: None, element: None, message: message.into(), hint: None }
     }
 
     /// An error.
@@ -51,6 +71,12 @@ impl Diagnostic {
     /// A note.
     pub fn note(message: impl Into<String>) -> Self {
         Self::new(Severity::Note, message)
+    }
+
+    /// The same, of this cause.
+    pub fn because(mut self, cause: Cause) -> Self {
+        self.cause = cause;
+        self
     }
 
     /// The same, about `file`.
@@ -76,6 +102,11 @@ impl Diagnostic {
         self.hint = Some(hint.into());
         self
     }
+}
+
+/// JSON knows only Unicode, file systems know more.
+fn lossy<S: Serializer>(file: &Option<PathBuf>, serializer: S) -> Result<S::Ok, S::Error> {
+    file.as_ref().map(|file| file.to_string_lossy()).serialize(serializer)
 }
 
 impl fmt::Display for Diagnostic {

@@ -59,7 +59,6 @@ pub struct Bench(tempfile::TempDir);
 impl Bench {
     pub fn new() -> Self {
         let bench = Self(tempfile::tempdir().unwrap());
-        fs::create_dir(bench.path("kitchen")).unwrap();
         bench.write("kitchen/scene.toml", SCENE);
         bench.write("kitchen/box.obj", BOX);
         bench.write("leaf.gltf", TRIANGLE);
@@ -71,7 +70,9 @@ impl Bench {
     }
 
     pub fn write(&self, name: &str, text: &str) {
-        fs::write(self.path(name), text).unwrap();
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
     }
 
     pub fn has(&self, name: &str) -> bool {

@@ -96,25 +96,53 @@ fn strict_makes_warnings_errors() {
     assert!(!bench.has("lines.exr"));
 }
 
-#[cfg(unix)]
 #[test]
-fn an_interrupted_render_is_5_and_saved() {
-    use std::io::{BufRead, BufReader};
-
+fn what_needs_more_memory_than_allowed_is_4() {
     let bench = Bench::new();
-    let arguments = "render kitchen/scene.toml -o out.exr --time 10m --stats-json stats.json";
-    let mut child = bench.command(arguments).spawn().unwrap();
-    let mut errors = BufReader::new(child.stderr.take().unwrap()).lines();
-    // The line says that rounds are done; no line at all would mean that the program has ended.
-    assert!(errors.any(|line| line.unwrap().contains("round ")), "a line of progress");
-    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(kill.success());
-    errors.for_each(drop);
-    let status = child.wait().unwrap();
-    assert_eq!(status.code(), Some(5), "{status}");
-    assert!(bench.image("out.exr").mean() > 0.01 && bench.has("out.png"));
-    let stats: serde_json::Value =
-        serde_json::from_slice(&fs::read(bench.path("stats.json")).unwrap()).unwrap();
-    assert_eq!(stats["complete"], false);
-    assert!(stats["rounds"].as_u64().unwrap() > 0);
+    for command in ["render", "validate", "inspect"] {
+        for file in ["leaf.gltf", "kitchen/scene.toml", "kitchen/box.obj"] {
+            bench
+                .run(&format!("{command} {file} --memory-limit 100"))
+                .exits(4)
+                .says(&["error: ", "memory limit"]);
+        }
+    }
+    // A file that is broken stays broken with more memory.
+    let broken = SCENE.replacen("illuminance", "iluminance", 1);
+    bench.write("kitchen/scene.toml", &broken);
+    bench
+        .run("validate kitchen/scene.toml --memory-limit 100")
+        .exits(3)
+        .says(&["memory limit", "iluminance"]);
+    assert!(!bench.has("leaf.exr"));
+}
+
+#[test]
+fn a_texture_without_coordinates_is_said_once() {
+    let bench = Bench::new();
+    let leaf = fs::read_to_string(bench.path("leaf.gltf")).unwrap();
+    // A PNG of one grey pixel.
+    let pixel =
+        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==";
+    let texture = format!(
+        "\"textures\": [{{ \"source\": 0 }}], \"images\": [{{ \"uri\": \"data:image/png;base64,{pixel}\" }}],\n  \"materials\""
+    );
+    let textured = leaf.replace("\"materials\"", &texture).replace(
+        "\"roughnessFactor\"",
+        "\"baseColorTexture\": { \"index\": 0, \"texCoord\": 1 }, \"roughnessFactor\"",
+    );
+    bench.write("textured.gltf", &textured);
+    bench.write(
+        "placed.toml",
+        "[[import]]\nfile = \"textured.gltf\"\n[[import]]\nfile = \"kitchen/box.obj\"\n",
+    );
+    for file in ["textured.gltf", "placed.toml"] {
+        let run = bench.run(&format!("validate {file}")).exits(0);
+        let said: Vec<_> = run.err.lines().filter(|line| line.contains("UV set 1")).collect();
+        assert_eq!(said.len(), 1, "{}", run.err);
+        for part in [file, "warning: ", "node \"leaf\"/mesh \"wedge\"", "material \"clay\""] {
+            assert!(said[0].contains(part), "{part} in {}", said[0]);
+        }
+        bench.run(&format!("validate {file} --strict")).exits(3);
+    }
 }

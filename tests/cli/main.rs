@@ -6,3 +6,6 @@ mod bench;
 mod commands;
 mod exits;
 mod images;
+mod set;
+#[cfg(unix)]
+mod signals;

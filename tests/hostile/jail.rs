@@ -26,11 +26,15 @@ const MESSAGES: usize = 64 << 10;
 pub enum Fate {
     /// Exit code 3 and an error.
     Refused,
+    /// Exit code 4 and an error: it asks for more than the limit.
+    TooLarge,
     /// Exit code 0 and a warning.
     Warned,
+    /// Refused or warned about.
+    Noticed,
     /// Exit code 0 without warning.
     Clean,
-    /// Refused, or read with or without warnings.
+    /// Refused, too large, or read with or without warnings.
     Either,
 }
 
@@ -133,9 +137,10 @@ fn judge(path: &Path, status: Option<ExitStatus>, messages: &str, fate: Fate) ->
         return Err(format!("{} bytes of messages", messages.len()));
     }
     match (code, fate) {
-        (3, Fate::Refused | Fate::Either) if said("error: ") => Ok(()),
-        (3, Fate::Refused | Fate::Either) => Err("no error names the file".into()),
-        (0, Fate::Warned) if said("warning: ") => Ok(()),
+        (3, Fate::Refused | Fate::Noticed | Fate::Either) | (4, Fate::TooLarge | Fate::Either) => {
+            if said("error: ") { Ok(()) } else { Err("no error names the file".into()) }
+        }
+        (0, Fate::Warned | Fate::Noticed) if said("warning: ") => Ok(()),
         (0, Fate::Clean) if !said("warning: ") => Ok(()),
         (0, Fate::Either) => Ok(()),
         _ => Err(format!("exit code {code}")),

@@ -1,7 +1,7 @@
 //! Hostile OBJ and MTL.
 
 use crate::jail::{
-    Fate::{Either, Refused, Warned},
+    Fate::{Clean, Either, Refused, Warned},
     Jail,
 };
 
@@ -52,7 +52,7 @@ fn long_and_large() {
         .map(|a| format!("v {} {} 0\n", a.cos(), a.sin()))
         .collect();
     let all: String = (1..=many).map(|i| format!(" {i}")).collect();
-    jail.try_file("round.obj", format!("{circle}f{all}\n"), Either);
+    jail.try_file("round.obj", format!("{circle}f{all}\n"), Clean);
     let comb: String = (0..many).map(|i| format!("v {i} {} 0\n", i % 2 * (many - i))).collect();
     jail.try_file("comb.obj", format!("{comb}f{all}\n"), Either);
     jail.try_file("fan.obj", format!("{TRIANGLE}f{}\n", " 1 2 3".repeat(many as usize)), Either);

@@ -1,6 +1,6 @@
 //! What a scene holds, as the numbers and names that people ask for: the shape of `ajar inspect --json`.
 
-use std::path::Path;
+use std::{borrow::Cow, path::Path};
 
 use ajar_scene::{Diagnostic, Image, ImageSource, Material, Placed, Scene, Texture};
 use serde::Serialize;
@@ -12,7 +12,7 @@ use crate::session::Loaded;
 /// Everything `ajar inspect` says. Items refer to each other by position in their lists.
 #[derive(Serialize)]
 pub(super) struct Contents<'a> {
-    pub file: &'a Path,
+    pub file: Cow<'a, str>,
     pub scene_hash: &'a str,
     pub counts: Counts,
     /// Box around all that is visible, metres.
@@ -97,7 +97,7 @@ pub(super) struct MaterialEntry<'a> {
 pub(super) struct TextureEntry<'a> {
     /// Name of its image.
     pub image: &'a str,
-    pub file: Option<&'a Path>,
+    pub file: Option<Cow<'a, str>>,
     /// Size of the encoded image; absent if the file has gone.
     pub bytes: Option<u64>,
     pub color_space: Value,
@@ -110,7 +110,7 @@ impl<'a> Contents<'a> {
         let placed = scene.placed();
         let meshes = meshes(scene, &placed);
         Self {
-            file,
+            file: file.to_string_lossy(),
             scene_hash: &loaded.hash,
             counts: counts(scene, &placed),
             bounds: scene.bounds().map(|(low, high)| Bounds {
@@ -215,7 +215,9 @@ fn material(material: &Material) -> MaterialEntry<'_> {
 
 fn texture<'a>(texture: &Texture, image: &'a Image) -> TextureEntry<'a> {
     let (file, bytes) = match &image.source {
-        ImageSource::File(path) => (Some(path.as_path()), std::fs::metadata(path).ok().map(|m| m.len())),
+        ImageSource::File(path) => {
+            (Some(path.to_string_lossy()), std::fs::metadata(path).ok().map(|m| m.len()))
+        }
         ImageSource::Embedded(bytes) => (None, Some(bytes.len() as u64)),
     };
     let color_space = json!(texture.color_space);

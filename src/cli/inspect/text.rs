@@ -21,7 +21,7 @@ pub(super) fn describe(contents: &Contents<'_>, all: bool) -> String {
     let materials = materials.iter().map(|it| material(it, textures));
     let lights = lights.iter().map(|it| light(it, textures));
     let mut sections = vec![
-        format!("{}\nscene {}", contents.file.display(), contents.scene_hash),
+        format!("{}\nscene {}", contents.file, contents.scene_hash),
         section("hierarchy", hierarchy(contents, all)),
         section("counts", tally(counts)),
         section("bounds", contents.bounds.iter().map(bounds)),
@@ -230,8 +230,8 @@ fn camera(camera: &CameraEntry<'_>) -> String {
 }
 
 fn texture(texture: &TextureEntry<'_>) -> String {
-    let place = match texture.file {
-        Some(path) => plain(&path.to_string_lossy()),
+    let place = match &texture.file {
+        Some(path) => plain(path),
         None => "embedded".into(),
     };
     let size = texture.bytes.map_or("missing".into(), bytes);

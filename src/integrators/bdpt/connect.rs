@@ -59,6 +59,8 @@ impl Contribution {
 pub struct Splat {
     /// Raster position, pixels.
     pub raster: DVec2,
+    /// The lens vertex.
+    pub lens: Vertex,
     /// What arrives there.
     pub found: Contribution,
 }
@@ -160,7 +162,7 @@ impl<'w> Connector<'w> {
         self.to_light[k] = seen.importance * end.vertex.projected(seen.direction);
         self.join_light(light, &end, &scattering, &lens, &edge, (s, 1));
         let weight = self.weight(&light.stops[0].vertex, s, 1);
-        Some(Splat { raster: seen.raster, found: Contribution { value, weight } })
+        Some(Splat { raster: seen.raster, lens, found: Contribution { value, weight } })
     }
 
     /// `value` times what of it crosses the edge; no ray is cast for nothing.

@@ -7,16 +7,17 @@ pub use connect::{Connector, Contribution, MAX_VERTICES, Splat};
 
 use ajar_render::{
     World,
+    bsdf::Mode,
     film::RoundFilm,
     math::Rgb,
-    path::Subpath,
+    path::{Kind, Stop, Subpath, Vertex},
     rng::{Purpose, Rng},
-    sampler::Sobol,
+    sampler::Sequence,
 };
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::{Context, Integrator};
+use crate::{Context, Integrator, Rounds};
 
 /// The bidirectional path tracer.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +36,20 @@ impl Integrator for Bdpt {
         MAX_VERTICES - 2
     }
 
-    fn render_round(&self, cx: &Context<'_>, round: u32, film: &RoundFilm) {
+    fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a> {
+        Box::new(BdptRounds(cx))
+    }
+}
+
+struct BdptRounds<'a>(Context<'a>);
+
+impl Rounds for BdptRounds<'_> {
+    fn scale(&self) -> f64 {
+        1.0 / f64::from(self.0.settings.samples_per_round)
+    }
+
+    fn render(&self, round: u32, film: &RoundFilm) {
+        let cx = &self.0;
         let (window, camera) = (cx.settings.window, &cx.world.camera);
         let light_fraction = window.pixels() as f64 / camera.pixels() as f64;
         (window.y0..window.y1).into_par_iter().for_each(|y| {
@@ -45,17 +59,20 @@ impl Integrator for Bdpt {
                     return;
                 }
                 let pixel = u64::from(y) * u64::from(camera.width) + u64::from(x);
+                let sequence = Sequence::new(cx.settings.seed, 0, pixel);
                 let mut sum = Rgb::ZERO;
-                for sample in 0..cx.settings.samples_per_round {
-                    let mut sobol = Sobol::new(cx.settings.seed, round, pixel, sample);
+                for (number, sample) in cx.settings.samples(round).enumerate() {
+                    let mut sobol = sequence.sample(sample);
                     let [dx, dy] = sobol.next_2d();
                     let raster = DVec2::new(f64::from(x) + dx, f64::from(y) + dy);
-                    let index = pixel * u64::from(cx.settings.samples_per_round) + u64::from(sample);
+                    let index = pixel * u64::from(cx.settings.samples_per_round) + number as u64;
                     let mut rng = Rng::new(cx.settings.seed, Purpose::Bidirectional, round, index);
-                    sum += tracer.sample(raster, sobol.next_2d(), &mut rng, |splat| {
-                        let (x, y) = (splat.raster.x as u32, splat.raster.y as u32);
-                        if let Some(index) = window.index(x, y) {
-                            film.add(index, splat.found.weighted() / light_fraction);
+                    tracer.sample(raster, sobol.next_2d(), &mut rng, |found| {
+                        if found.t > 1 {
+                            sum += found.contribution.weighted();
+                        } else if let Some(index) = window.index(found.raster.x as u32, found.raster.y as u32)
+                        {
+                            film.add(index, found.contribution.weighted() / light_fraction);
                         }
                     });
                 }
@@ -83,42 +100,93 @@ impl<'w> Tracer<'w> {
         Self { world, max_depth, light: Subpath::default(), eye: Subpath::default(), connector }
     }
 
-    /// One eye and one light subpath and all their connections. Returns what arrives at `raster` and hands splats, for a
-    /// film of pixel measure, to `splat`.
+    /// One eye and one light subpath and all their connections that carry light. Contributions are for a film of pixel
+    /// measure.
     pub fn sample(
         &mut self,
         raster: DVec2,
         lens: [f64; 2],
         rng: &mut Rng,
-        mut splat: impl FnMut(Splat),
-    ) -> Rgb {
-        let ray = self.world.camera.ray(raster, lens);
-        self.eye.trace_eye(
-            self.world,
-            self.world.lens_vertex(ray.origin),
-            ray.direction,
-            self.max_depth + 1,
-            rng,
-        );
-        self.light.trace_light(self.world, self.max_depth, rng);
-        let mut sum = Rgb::ZERO;
-        for t in 2..=self.eye.len() {
-            sum += self.connector.hit(&self.eye, t).weighted();
-            if self.eye.stops[t - 1].vertex.infinite() || t == self.max_depth + 1 {
+        mut visit: impl FnMut(&Found<'_>),
+    ) {
+        let Self { world, max_depth, light, eye, connector } = self;
+        let ray = world.camera.ray(raster, lens);
+        eye.trace_eye(world, world.lens_vertex(ray.origin), ray.direction, *max_depth + 1, rng);
+        light.trace_light(world, *max_depth, rng);
+        let (light, eye) = (&*light, &*eye);
+        let mut found = |s, t, raster, lens, end: Option<&Vertex>, contribution: Contribution| {
+            if contribution.weight > 0.0 && contribution.value != Rgb::ZERO {
+                visit(&Found { s, t, raster, lens, end, contribution, light, eye });
+            }
+        };
+        for t in 2..=eye.len() {
+            found(0, t, raster, lens, None, connector.hit(eye, t));
+            if eye.stops[t - 1].vertex.infinite() || t == *max_depth + 1 {
                 continue;
             }
-            if let Some((x0, density)) = self.world.lights.sample(rng.f64(), rng.pair()) {
-                sum += self.connector.next_event(&x0, density, &self.eye, t).weighted();
+            if let Some((x0, density)) = world.lights.sample(rng.f64(), rng.pair()) {
+                found(1, t, raster, lens, Some(&x0), connector.next_event(&x0, density, eye, t));
             }
-            for s in 2..=self.light.len().min(self.max_depth + 1 - t) {
-                sum += self.connector.connect(&self.light, s, &self.eye, t).weighted();
-            }
-        }
-        for s in 2..=self.light.len() {
-            if let Some(found) = self.connector.splat(&self.light, s, rng.pair()) {
-                splat(found);
+            for s in 2..=light.len().min(*max_depth + 1 - t) {
+                found(s, t, raster, lens, None, connector.connect(light, s, eye, t));
             }
         }
-        sum
+        for s in 2..=light.len() {
+            let lens = rng.pair();
+            if let Some(splat) = connector.splat(light, s, lens) {
+                found(s, 1, splat.raster, lens, Some(&splat.lens), splat.found);
+            }
+        }
+    }
+}
+
+/// What a technique of a bidirectional sample found: s vertices from the light, t from the eye.
+#[derive(Clone, Copy)]
+pub struct Found<'a> {
+    /// Vertices of the light subpath, or the light end sampled for next-event estimation.
+    pub s: usize,
+    /// Vertices of the eye subpath, or the lens.
+    pub t: usize,
+    /// Raster position, pixels.
+    pub raster: DVec2,
+    /// Point of the lens.
+    pub lens: [f64; 2],
+    /// The vertex that belongs to no subpath: the light for s = 1, the lens for t = 1.
+    end: Option<&'a Vertex>,
+    /// What arrives.
+    pub contribution: Contribution,
+    light: &'a Subpath,
+    eye: &'a Subpath,
+}
+
+impl Found<'_> {
+    /// What x_0 is.
+    pub fn light_kind(&self) -> Kind {
+        match self.end.filter(|_| self.s == 1) {
+            Some(light) => light.kind,
+            None if self.s == 0 => self.eye.stops[self.t - 1].vertex.kind,
+            None => self.light.stops[0].vertex.kind,
+        }
+    }
+
+    /// Whether x_1 scatters smoothly in this path.
+    pub fn second_is_connectable(&self) -> bool {
+        self.s < 3 || self.light.stops[1].vertex.connectable()
+    }
+
+    /// Hands the path's vertices, light to eye, to `push`.
+    pub fn vertices(&self, mut push: impl FnMut(Vertex)) {
+        let smooth = |vertex: &Vertex| Vertex { mode: Mode::Smooth, ..*vertex };
+        let inner = |stops: &[Stop], n: usize, i: usize| {
+            if i + 1 == n { smooth(&stops[i].vertex) } else { stops[i].vertex }
+        };
+        match self.end.filter(|_| self.s == 1) {
+            Some(light) => push(*light),
+            None => (0..self.s).for_each(|i| push(inner(&self.light.stops, self.s, i))),
+        }
+        match self.end.filter(|_| self.t == 1) {
+            Some(lens) => push(*lens),
+            None => (0..self.t).rev().for_each(|i| push(inner(&self.eye.stops, self.t, i))),
+        }
     }
 }

@@ -1,164 +1,39 @@
-//! Path tracing and bidirectional path tracing must show the same image (mlt.md §2.4 b, V6).
+//! All integrators must show the same image (mlt.md §2.4 b, V6).
 #![allow(clippy::unwrap_used, reason = "a failing test panics")]
 
 mod common;
 
-use ajar_integrators::{bdpt::Bdpt, path::PathTracer};
-use ajar_render::World;
-use ajar_scene::{AlphaMode, Input, LightKind, Material, Projection};
-use common::{Builder, compare::assert_same, pinhole, render, settings, shapes};
-use glam::{DVec3, Vec3};
-
-/// A room with coloured walls, open to the camera, and a lamp under its ceiling.
-fn room(lamp: bool) -> Builder {
-    let mut b = Builder::default();
-    let white = b.diffuse(Vec3::splat(0.7));
-    let (red, green) = (b.diffuse(Vec3::new(0.6, 0.1, 0.1)), b.diffuse(Vec3::new(0.1, 0.5, 0.1)));
-    let side = |o, a, b| shapes::quad(o, a, b);
-    let (x, y, z) = (Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0);
-    let low = Vec3::splat(-1.0);
-    b.mesh(side(low, z, x), white).mesh(side(low + y, x, z), white).mesh(side(low, x, y), white);
-    b.mesh(side(low, y, z), red).mesh(side(low + x, z, y), green);
-    if lamp {
-        let light = b.emitter(Vec3::new(17.0, 12.0, 6.0));
-        b.mesh(side(Vec3::new(-0.25, 0.98, -0.25), Vec3::X * 0.5, Vec3::Z * 0.5), light);
-    }
-    b.camera(pinhole(0.7), DVec3::new(0.0, 0.0, 3.8), DVec3::ZERO);
-    b
-}
-
-fn check(name: &str, world: &World, depth: usize) {
-    let path = render(world, &PathTracer, &settings(world, 1, depth, 64), 24);
-    let bdpt = render(world, &Bdpt, &settings(world, 2, depth, 16), 24);
-    assert_same(name, &path, &bdpt, world.camera.width as usize);
-}
+use ajar_integrators::{
+    bdpt::Bdpt,
+    mlt::{Ajar, Mlt},
+    path::PathTracer,
+};
+use common::{
+    compare::{assert_blocks_agree, assert_same},
+    render, render_blocks,
+    scenes::SCENES,
+    settings,
+};
 
 #[test]
-fn diffuse_room() {
-    let mut b = room(true);
-    let white = b.diffuse(Vec3::splat(0.7));
-    b.mesh(shapes::cuboid(Vec3::new(-0.6, -1.0, -0.5), Vec3::new(-0.1, 0.2, 0.0), false), white);
-    check("diffuse room", &b.world(32), 6);
-}
-
-#[test]
-fn rough_metal_and_plastic() {
-    let mut b = room(true);
-    let metal = b.material(Material {
-        metallic: Input::constant(1.0),
-        roughness: Input::constant(0.45),
-        anisotropy: Input::constant(0.5),
-        ..Material::default()
-    });
-    let coated = b.material(Material {
-        base_color: Input::constant(Vec3::new(0.2, 0.3, 0.8)),
-        coat: Input::constant(1.0),
-        coat_roughness: Input::constant(0.4),
-        ..Material::default()
-    });
-    b.mesh(shapes::sphere(Vec3::new(-0.4, -0.6, -0.2), 0.4, 16, true), metal);
-    b.mesh(shapes::sphere(Vec3::new(0.45, -0.6, 0.2), 0.4, 8, true), coated);
-    check("rough metal and plastic", &b.world(32), 6);
-}
-
-#[test]
-fn mirror_and_glass() {
-    let mut b = room(true);
-    let mirror = b.material(Material {
-        metallic: Input::constant(1.0),
-        roughness: Input::constant(0.0),
-        ..Material::default()
-    });
-    let glass = b.material(Material {
-        base_color: Input::constant(Vec3::ONE),
-        transmission: Input::constant(1.0),
-        roughness: Input::constant(0.0),
-        attenuation_color: Vec3::new(0.9, 0.5, 0.5),
-        attenuation_distance: 0.5,
-        ..Material::default()
-    });
-    b.mesh(shapes::cuboid(Vec3::new(-0.7, -1.0, -0.6), Vec3::new(-0.1, 0.1, -0.1), false), mirror);
-    b.mesh(shapes::sphere(Vec3::new(0.4, -0.4, 0.2), 0.4, 24, true), glass);
-    check("mirror and glass", &b.world(32), 8);
-}
-
-#[test]
-fn rough_glass() {
-    let mut b = room(true);
-    let frosted = b.material(Material {
-        base_color: Input::constant(Vec3::new(0.9, 0.9, 1.0)),
-        transmission: Input::constant(1.0),
-        roughness: Input::constant(0.5),
-        ..Material::default()
-    });
-    b.mesh(shapes::sphere(Vec3::new(0.1, -0.4, 0.2), 0.5, 16, true), frosted);
-    check("rough glass", &b.world(32), 8);
-}
-
-#[test]
-fn lights_without_extent() {
-    let kinds = [
-        LightKind::Point { intensity: 3.0 },
-        LightKind::Spot { intensity: 8.0, inner: 0.3, outer: 0.6 },
-        LightKind::Directional { illuminance: 4.0, angle: 0.0 },
-    ];
-    for kind in kinds {
-        let mut b = room(false);
-        let white = b.diffuse(Vec3::splat(0.7));
-        b.mesh(shapes::sphere(Vec3::new(0.1, -0.4, 0.0), 0.3, 6, true), white);
-        let name = format!("{kind:?}");
-        b.light(kind, DVec3::new(0.3, 0.7, 1.5), DVec3::new(0.0, -0.7, -0.3));
-        check(&name, &b.world(32), 5);
+fn path_tracing_and_bidirectional_path_tracing() {
+    for scene in SCENES {
+        let world = (scene.world)();
+        let path = render(&world, &PathTracer, &settings(&world, 1, scene.depth, 64), 24);
+        let bdpt = render(&world, &Bdpt, &settings(&world, 2, scene.depth, 16), 24);
+        assert_same(scene.name, &path, &bdpt, world.camera.width as usize);
     }
 }
 
 #[test]
-fn sun_and_sky() {
-    let mut b = room(false);
-    let white = b.diffuse(Vec3::splat(0.5));
-    b.mesh(shapes::sphere(Vec3::new(0.1, -0.4, 0.0), 0.3, 8, true), white);
-    b.light(LightKind::Environment { radiance: 0.7, texture: None }, DVec3::ZERO, DVec3::NEG_Z);
-    b.light(
-        LightKind::Directional { illuminance: 3.0, angle: 0.2 },
-        DVec3::ZERO,
-        DVec3::new(0.2, -0.5, -0.8),
-    );
-    check("sun and sky", &b.world(32), 5);
-}
-
-#[test]
-fn thin_lens() {
-    let mut b = room(true);
-    let white = b.diffuse(Vec3::splat(0.7));
-    b.mesh(shapes::sphere(Vec3::new(0.3, -0.5, 0.6), 0.3, 8, true), white);
-    let lens =
-        Projection::Perspective { yfov: 0.7, lens_radius: 0.15, focus_distance: 3.2, shift: [0.1, 0.0] };
-    b.camera(lens, DVec3::new(0.0, 0.0, 3.8), DVec3::ZERO);
-    check("thin lens", &b.world(32), 5);
-}
-
-#[test]
-fn orthographic() {
-    let mut b = room(true);
-    let mirror = b.material(Material {
-        metallic: Input::constant(1.0),
-        roughness: Input::constant(0.0),
-        ..Material::default()
-    });
-    b.mesh(shapes::sphere(Vec3::new(0.3, -0.5, 0.0), 0.4, 12, true), mirror);
-    b.camera(Projection::Orthographic { half_height: 1.1 }, DVec3::new(0.3, 0.2, 3.0), DVec3::ZERO);
-    check("orthographic", &b.world(32), 5);
-}
-
-#[test]
-fn partial_opacity() {
-    let mut b = room(true);
-    let veil = b.material(Material {
-        opacity: Input::constant(0.4),
-        alpha_mode: AlphaMode::Blend,
-        ..common::diffuse(Vec3::new(0.2, 0.6, 0.6))
-    });
-    b.mesh(shapes::quad(Vec3::new(-0.8, 0.3, -0.6), Vec3::X * 1.6, Vec3::Z * 1.4), veil);
-    b.mesh(shapes::quad(Vec3::new(-0.8, -0.9, 0.3), Vec3::X * 0.9, Vec3::Y * 0.9), veil);
-    check("partial opacity", &b.world(32), 5);
+fn bidirectional_path_tracing_and_metropolis_light_transport() {
+    for scene in SCENES {
+        let world = (scene.world)();
+        let bdpt = render_blocks(&world, &Bdpt, &settings(&world, 3, scene.depth, 16), 24);
+        let mlt = render_blocks(&world, &Mlt, &settings(&world, 4, scene.depth, 64), 48);
+        assert_blocks_agree(&format!("{}, mlt", scene.name), &bdpt, &mlt);
+        let ajar = Ajar { always: true };
+        let ajar = render_blocks(&world, &ajar, &settings(&world, 5, scene.depth, 16), 32);
+        assert_blocks_agree(&format!("{}, ajar", scene.name), &bdpt, &ajar);
+    }
 }

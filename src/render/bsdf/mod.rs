@@ -149,8 +149,19 @@ impl Bsdf {
         Self { kind: if albedo == Rgb::ZERO { Kind::Black } else { Kind::Lambert(albedo) } }
     }
 
+    /// Makes it equal to `other`, moving no more bytes than that kind of surface needs.
+    #[inline]
+    pub(crate) fn set(&mut self, other: &Self) {
+        match &other.kind {
+            Kind::Black => self.kind = Kind::Black,
+            Kind::Lambert(albedo) => self.kind = Kind::Lambert(*albedo),
+            Kind::Layered(layered) => self.kind = Kind::Layered(*layered),
+        }
+    }
+
     /// Radiance BSDF of light that flows from `w_l` to `w_e`, per steradian and without cosine, smooth lobes only;
     /// transmission into another medium includes (η_e/η_l)².
+    #[inline]
     pub fn eval(&self, w_l: DVec3, w_e: DVec3) -> Rgb {
         match &self.kind {
             Kind::Black => Rgb::ZERO,
@@ -170,6 +181,7 @@ impl Bsdf {
     }
 
     /// [`Self::eval`] and [`Self::pdf`] in both directions at less than their joint cost.
+    #[inline]
     pub fn evaluate(&self, w_l: DVec3, w_e: DVec3) -> Evaluation {
         match &self.kind {
             Kind::Black => Evaluation::default(),
@@ -183,6 +195,7 @@ impl Bsdf {
     }
 
     /// Samples a direction given `known`: the lobe with `u_lobe`, then within it with `u`. `None`: absorbed.
+    #[inline]
     pub fn sample(&self, _side: Side, known: DVec3, u_lobe: f64, u: [f64; 2]) -> Option<BsdfSample> {
         match &self.kind {
             Kind::Black => None,
@@ -236,6 +249,7 @@ impl Bsdf {
     }
 
     /// Whether some lobe has a density.
+    #[inline]
     pub fn has_smooth(&self) -> bool {
         match &self.kind {
             Kind::Black => false,
@@ -253,11 +267,13 @@ impl Bsdf {
     }
 
     /// Estimate from above of the hemispherical albedo, in [0, 1], of the parameters alone: a survival probability.
+    #[inline]
     pub fn albedo_bound(&self) -> f64 {
         self.albedo().max_element().clamp(0.0, 1.0)
     }
 
     /// Hemispherical albedo, for the auxiliary image that denoisers take.
+    #[inline]
     pub fn albedo(&self) -> Rgb {
         match &self.kind {
             Kind::Black => Rgb::ZERO,
@@ -268,19 +284,23 @@ impl Bsdf {
 }
 
 /// Whether both directions are safely on the same side.
+#[inline]
 fn same_side(a: DVec3, b: DVec3) -> bool {
     a.z * b.z > 0.0 && a.z.abs() >= GRAZING && b.z.abs() >= GRAZING
 }
 
 /// `w` seen from the other side of the surface.
+#[inline]
 fn mirror(w: DVec3) -> DVec3 {
     DVec3::new(w.x, w.y, -w.z)
 }
 
+#[inline]
 fn cosine_pdf(known: DVec3, new: DVec3) -> f64 {
     if same_side(known, new) { new.z.abs() * FRAC_1_PI } else { 0.0 }
 }
 
+#[inline]
 fn sample_cosine(known: DVec3, u: [f64; 2]) -> Option<BsdfSample> {
     let w = square_to_cosine_hemisphere(u);
     let direction = if known.z > 0.0 { w } else { mirror(w) };

@@ -44,8 +44,9 @@ pub(super) struct Candidate {
     pub(super) v: f32,
 }
 
-/// Distances along a ray and weights of the second and third vertex, in f64.
+/// Distance along a ray and weights of the second and third vertex, in f64; the vertices.
 pub(super) struct Refined {
+    pub(super) vertices: [DVec3; 3],
     pub(super) t: f64,
     pub(super) u: f64,
     pub(super) v: f64,
@@ -98,7 +99,8 @@ impl Blas {
 
     /// Vertices of the triangle that was given as number `index`.
     pub(super) fn vertices(&self, index: u32) -> [DVec3; 3] {
-        self.slot_vertices(self.slots[index as usize]).map(|p| self.center + p)
+        let [a, b, c] = self.slot_vertices(self.slots[index as usize]);
+        [self.center + a, self.center + b, self.center + c]
     }
 
     /// What positions are relative to; none if there is no triangle.
@@ -106,9 +108,11 @@ impl Blas {
         (!self.tree.nodes.is_empty()).then_some(self.center)
     }
 
+    #[inline]
     fn slot_vertices(&self, slot: u32) -> [DVec3; 3] {
         let slot = slot as usize;
-        self.packets[slot / LANES].get(slot % LANES).map(|p| Vec3::from_array(p).as_dvec3())
+        let [a, b, c] = self.packets[slot / LANES].get(slot % LANES);
+        [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()]
     }
 
     /// The ray as this set sees it; none if it misses the bounds before `t_max`.
@@ -116,8 +120,7 @@ impl Blas {
     pub(super) fn local_ray(&self, origin: DVec3, direction: DVec3, t_max: f64) -> Option<LocalRay> {
         let origin = origin - self.center;
         let start = enter(origin, direction, self.low, self.high, t_max)?;
-        let moved = (origin + direction * start).as_vec3().to_array();
-        let along = direction.as_vec3().to_array();
+        let (moved, along) = ((origin + direction * start).as_vec3a(), direction.as_vec3a());
         Some(LocalRay {
             slabs: Slabs::new(moved, along),
             shear: Shear::new(moved, along),
@@ -173,9 +176,18 @@ impl Blas {
         (ray.origin - a).dot(normal) * ray.direction.dot(normal) < 0.0
     }
 
+    /// The nearest candidate ahead, or any; asked for when the nearest of all turns out to be behind.
+    #[cold]
+    pub(super) fn closest_ahead(&self, ray: &LocalRay, limit: f32, any: bool) -> Option<Candidate> {
+        self.closest(ray, limit, any, |c| self.is_ahead(ray, c))
+    }
+
     /// The hit in f64. `t` counts from the true origin.
+    #[inline]
     pub(super) fn refine(&self, ray: &LocalRay, hit: &Candidate) -> Refined {
-        refine(self.slot_vertices(hit.slot), ray, hit)
+        let [a, b, c] = self.slot_vertices(hit.slot);
+        let vertices = [self.center + a, self.center + b, self.center + c];
+        refine([a, b, c], vertices, ray, hit)
     }
 }
 
@@ -218,10 +230,15 @@ fn padded_box(triangle: &[Vec3; 3]) -> Aabb {
 }
 
 /// Distance at which a ray is within a box: 0 if it starts there, none if it gets there after `t_max` or never.
+#[inline]
 pub(super) fn enter(origin: DVec3, direction: DVec3, low: DVec3, high: DVec3, t_max: f64) -> Option<f64> {
     if origin.cmpge(low).all() && origin.cmple(high).all() {
         return (t_max >= 0.0).then_some(0.0);
     }
+    enter_from_outside(origin, direction, low, high, t_max)
+}
+
+fn enter_from_outside(origin: DVec3, direction: DVec3, low: DVec3, high: DVec3, t_max: f64) -> Option<f64> {
     let (mut near, mut far) = (0f64, t_max);
     for axis in 0..3 {
         let (low, high, along) = (low[axis] - origin[axis], high[axis] - origin[axis], direction[axis]);
@@ -236,7 +253,8 @@ pub(super) fn enter(origin: DVec3, direction: DVec3, low: DVec3, high: DVec3, t_
 }
 
 /// Möller & Trumbore 1997 in f64, with the point kept inside the triangle.
-fn refine([a, b, c]: [DVec3; 3], ray: &LocalRay, hit: &Candidate) -> Refined {
+#[inline]
+fn refine([a, b, c]: [DVec3; 3], vertices: [DVec3; 3], ray: &LocalRay, hit: &Candidate) -> Refined {
     let (ab, ac) = (b - a, c - a);
     let p = ray.direction.cross(ac);
     let inverse = 1.0 / ab.dot(p);
@@ -255,5 +273,5 @@ fn refine([a, b, c]: [DVec3; 3], ray: &LocalRay, hit: &Candidate) -> Refined {
         v /= sum;
     }
     let t = (ab * u + ac * v - from).dot(ray.direction) / ray.direction.length_squared();
-    Refined { t, u, v }
+    Refined { vertices, t, u, v }
 }

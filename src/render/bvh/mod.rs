@@ -65,6 +65,15 @@ pub struct Hit {
     pub t: f64,
 }
 
+/// A hit and the vertices of its triangle, as [`Geometry::vertices`] gives them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// The hit.
+    pub hit: Hit,
+    /// World-space vertices.
+    pub vertices: [DVec3; 3],
+}
+
 /// Everything rays can meet. Immutable; any number of threads may ask it.
 #[derive(Debug)]
 pub struct Geometry {
@@ -152,13 +161,15 @@ impl Geometry {
 
     /// How far traversal may misplace a triangle of `instance` with these [`Self::vertices`] for rays that start on it:
     /// the distance for [`offset_origin`].
+    #[inline]
     pub fn rounding(&self, instance: u32, vertices: &[DVec3; 3]) -> f64 {
         let [a, b, c] = *vertices;
         let extent =
             (b - a).length_squared().max((c - a).length_squared()).max((c - b).length_squared()).sqrt();
         let mut reach = 0f64;
         if let Some(center) = self.baked.center() {
-            reach = vertices.iter().fold(reach, |m, p| m.max((*p - center).abs().max_element()));
+            let far = (a - center).abs().max((b - center).abs()).max((c - center).abs());
+            reach = far.max_element();
         }
         if let Place::Own(number) = &self.places[instance as usize] {
             let one = self.tlas.placement(*number);
@@ -173,36 +184,65 @@ impl Geometry {
     /// The nearest hit for which `accept` holds, at a distance in (0, `t_max`]. Distances given to `accept` are those of
     /// f32; it is called for some of the hits on the way, in no particular order.
     #[inline]
-    pub fn intersect(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
-        self.find::<false>(ray, accept)
+    pub fn intersect(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> Option<Met> {
+        self.find::<false, true>(ray, accept)
+    }
+
+    /// The nearest hit at a distance in (0, `t_max`].
+    #[inline]
+    pub fn nearest(&self, ray: &Ray) -> Option<Met> {
+        self.find::<false, false>(ray, |_| true)
     }
 
     /// Whether there is any hit for which `accept` holds, at a distance in (0, `t_max`].
     #[inline]
     pub fn occluded(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
-        self.find::<true>(ray, accept).is_some()
+        self.find::<true, true>(ray, accept).is_some()
+    }
+
+    /// Whether there is any hit at a distance in (0, `t_max`].
+    #[inline]
+    pub fn blocked(&self, ray: &Ray) -> bool {
+        self.find::<true, false>(ray, |_| true).is_some()
     }
 
     #[inline(always)]
-    fn find<const ANY: bool>(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
+    fn find<const ANY: bool, const FILTER: bool>(
+        &self,
+        ray: &Ray,
+        accept: impl Fn(&Hit) -> bool,
+    ) -> Option<Met> {
         if ray.t_max <= 0.0 || ray.t_max.is_nan() {
             return None;
         }
-        let mut best = find_in::<ANY>(&self.baked, None, ray, &accept);
-        if ANY && best.is_some() {
+        let best = find_in::<ANY, FILTER>(&self.baked, None, ray, &accept);
+        if self.tlas.is_empty() || (ANY && best.is_some()) {
             return best;
         }
-        let mut rest = Ray { t_max: best.map_or(ray.t_max, |hit| hit.t), ..*ray };
+        self.find_placed::<ANY, FILTER>(ray, best, &accept)
+    }
+
+    /// What is nearer than `best` among the placements of the top level.
+    #[inline(never)]
+    fn find_placed<const ANY: bool, const FILTER: bool>(
+        &self,
+        ray: &Ray,
+        mut best: Option<Met>,
+        accept: &impl Fn(&Hit) -> bool,
+    ) -> Option<Met> {
+        let mut rest = Ray { t_max: best.map_or(ray.t_max, |met| met.hit.t), ..*ray };
         self.tlas.walk(ray.origin, ray.direction, rest.t_max, |one| {
             let local = Ray {
                 origin: one.to_local.transform_point3(ray.origin),
                 direction: one.to_local.transform_vector3(ray.direction),
                 t_max: rest.t_max,
             };
-            let found = find_in::<ANY>(&one.blas, Some(one.instance), &local, &accept);
-            if let Some(hit) = found.filter(|hit| best.is_none_or(|b| is_before(hit, &b))) {
-                best = Some(hit);
-                rest.t_max = if ANY { f64::NEG_INFINITY } else { hit.t };
+            let found = find_in::<ANY, FILTER>(&one.blas, Some(one.instance), &local, accept);
+            if let Some(met) = found.filter(|met| best.is_none_or(|b| is_before(&met.hit, &b.hit))) {
+                let [a, b, c] = met.vertices;
+                let vertices = [a, b, c].map(|p| one.to_world.transform_point3(p));
+                best = Some(Met { vertices, ..met });
+                rest.t_max = if ANY { f64::NEG_INFINITY } else { met.hit.t };
             }
             rest.t_max
         });
@@ -222,12 +262,12 @@ fn is_before(a: &Hit, b: &Hit) -> bool {
 
 /// The nearest hit, or any, in one set of triangles. `ray` is in its space; `t` is the same in all spaces.
 #[inline(always)]
-fn find_in<const ANY: bool>(
+fn find_in<const ANY: bool, const FILTER: bool>(
     blas: &Blas,
     instance: Option<u32>,
     ray: &Ray,
     accept: &impl Fn(&Hit) -> bool,
-) -> Option<Hit> {
+) -> Option<Met> {
     let local = blas.local_ray(ray.origin, ray.direction, ray.t_max)?;
     let hit = |c: &Candidate, u: f32, v: f32, t: f64| Hit {
         instance: instance.unwrap_or(c.id[0]),
@@ -237,12 +277,16 @@ fn find_in<const ANY: bool>(
         t,
     };
     let limit = (ray.t_max - local.start) as f32;
-    let found = blas.closest(&local, limit, ANY, |c| {
-        // At grazing angles rounding can put a plane behind the origin in front of it.
-        blas.is_ahead(&local, c) && accept(&hit(c, c.u, c.v, local.start + f64::from(c.t)))
+    let mut found = blas.closest(&local, limit, ANY, |c| {
+        !FILTER || (blas.is_ahead(&local, c) && accept(&hit(c, c.u, c.v, local.start + f64::from(c.t))))
     })?;
+    // At grazing angles rounding can put a plane behind the origin in front of it.
+    if !FILTER && !blas.is_ahead(&local, &found) {
+        found = blas.closest_ahead(&local, limit, ANY)?;
+    }
     let exact = blas.refine(&local, &found);
-    Some(hit(&found, exact.u as f32, exact.v as f32, exact.t.max(0.0).min(ray.t_max)))
+    let hit = hit(&found, exact.u as f32, exact.v as f32, exact.t.max(0.0).min(ray.t_max));
+    Some(Met { hit, vertices: exact.vertices })
 }
 
 fn is_invertible(map: &DAffine3) -> bool {

@@ -34,12 +34,14 @@ pub struct Anchor {
 
 /// The start of a ray that leaves the surface point `p` with geometric normal `ng` toward `w`: `p` moved by `rounding`
 /// to the side that `w` is on.
+#[inline]
 pub fn offset_origin(p: DVec3, ng: DVec3, w: DVec3, rounding: f64) -> DVec3 {
     p + ng * rounding.copysign(ng.dot(w))
 }
 
 /// The ray between two points that meets neither's surface, for visibility tests. It is empty (`t_max` 0) if the points
 /// are too close to tell apart.
+#[inline]
 pub fn segment(from: &Anchor, to: &Anchor) -> Ray {
     let w = to.position - from.position;
     let start = offset_origin(from.position, from.normal, w, from.rounding);

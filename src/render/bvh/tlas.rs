@@ -83,6 +83,10 @@ impl Tlas {
         &self.placed[self.slots[number as usize] as usize]
     }
 
+    pub(super) fn is_empty(&self) -> bool {
+        self.tree.nodes.is_empty()
+    }
+
     /// Corners of the bounds; low above high if there is nothing.
     pub(super) fn bounds(&self) -> (DVec3, DVec3) {
         (self.center + self.low, self.center + self.high)
@@ -111,8 +115,7 @@ impl Tlas {
         }
         let origin = origin - self.center;
         let Some(start) = enter(origin, direction, self.low, self.high, t_max) else { return };
-        let moved = (origin + direction * start).as_vec3().to_array();
-        let slabs = Slabs::new(moved, direction.as_vec3().to_array());
+        let slabs = Slabs::new((origin + direction * start).as_vec3a(), direction.as_vec3a());
         self.tree.walk(&slabs, (t_max - start) as f32, |first, count, mut limit| {
             for placed in &self.placed[first as usize..(first + count) as usize] {
                 limit = limit.min((visit(placed) - start) as f32);

@@ -2,6 +2,8 @@
 //!
 //! Boxes are stored as one array per side, so that a ray meets all children of a node at once.
 
+use glam::Vec3A;
+
 use super::lanes::Eight;
 use super::stack::Space;
 
@@ -63,9 +65,8 @@ pub(super) struct Slabs {
     /// origin asks for.
     near: [f32; 3],
     far: [f32; 3],
-    /// Which sides are near and far, per axis.
-    near_side: [usize; 3],
-    far_side: [usize; 3],
+    /// Axes along which the ray goes down, so that high sides are near.
+    negative: [bool; 3],
 }
 
 /// Boxes grow by this part of the coordinates. Shear and edge functions of the triangle test and the box test itself
@@ -73,20 +74,18 @@ pub(super) struct Slabs {
 pub(super) const PADDING: f32 = 4e-6;
 
 impl Slabs {
-    pub(super) fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
-        let pad = PADDING * origin.iter().fold(0f32, |m, x| m.max(x.abs()));
+    #[inline]
+    pub(super) fn new(origin: Vec3A, direction: Vec3A) -> Self {
         // The inverse stays finite so that no product with a zero is undefined.
-        let inverse = direction.map(|d| 1.0 / if d.abs() < 1e-18 { 1e-18f32.copysign(d) } else { d });
-        let negative = inverse.map(|x| x < 0.0);
-        let shifted = |sign: f32| {
-            std::array::from_fn(|k| (origin[k] + if negative[k] { -sign } else { sign } * pad) * inverse[k])
-        };
+        let least = Vec3A::splat(1e-18);
+        let steep = Vec3A::select(direction.abs().cmplt(least), least.copysign(direction), direction);
+        let inverse = steep.recip();
+        let pad = Vec3A::splat(PADDING * origin.abs().max_element()).copysign(inverse);
         Self {
-            inverse,
-            near: shifted(1.0),
-            far: shifted(-1.0),
-            near_side: std::array::from_fn(|k| if negative[k] { k + 3 } else { k }),
-            far_side: std::array::from_fn(|k| if negative[k] { k } else { k + 3 }),
+            inverse: inverse.to_array(),
+            near: ((origin + pad) * inverse).to_array(),
+            far: ((origin - pad) * inverse).to_array(),
+            negative: [inverse.x < 0.0, inverse.y < 0.0, inverse.z < 0.0],
         }
     }
 }
@@ -98,9 +97,11 @@ fn meet(node: &Node, ray: &Slabs, limit: f32) -> (Eight, u32) {
     let mut leave = Eight::splat(limit);
     for axis in 0..3 {
         let inverse = Eight::splat(ray.inverse[axis]);
-        let near = Eight::new(&node.sides[ray.near_side[axis]]);
+        let (low, high) = (axis, axis + 3);
+        let (near, far) = if ray.negative[axis] { (high, low) } else { (low, high) };
+        let near = Eight::new(&node.sides[near]);
         enter = near.multiply_subtract(inverse, Eight::splat(ray.near[axis])).max(enter);
-        let far = Eight::new(&node.sides[ray.far_side[axis]]);
+        let far = Eight::new(&node.sides[far]);
         leave = far.multiply_subtract(inverse, Eight::splat(ray.far[axis])).min(leave);
     }
     (enter, enter.at_most(leave))

@@ -3,6 +3,8 @@
 //! Nothing here is fused: an edge that two triangles share must give both exactly opposite edge functions, on every
 //! processor.
 
+use glam::{Vec3, Vec3A, Vec3Swizzles};
+
 use super::lanes::Four;
 
 /// Triangles in a packet.
@@ -34,8 +36,11 @@ impl Packet {
         }
     }
 
-    pub(super) fn get(&self, lane: usize) -> [[f32; 3]; 3] {
-        self.vertices.map(|vertex| vertex.map(|axis| axis[lane]))
+    #[inline]
+    pub(super) fn get(&self, lane: usize) -> [Vec3; 3] {
+        let vertex = |[x, y, z]: &[Lanes; 3]| Vec3::new(x[lane], y[lane], z[lane]);
+        let [a, b, c] = &self.vertices;
+        [vertex(a), vertex(b), vertex(c)]
     }
 
     pub(super) fn id(&self, lane: usize) -> [u32; 2] {
@@ -52,19 +57,18 @@ pub(super) struct Shear {
 }
 
 impl Shear {
-    pub(super) fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
-        let size = direction.map(f32::abs);
-        let z = if size[0] >= size[1] && size[0] >= size[2] {
-            0
-        } else if size[1] >= size[2] {
-            1
+    #[inline]
+    pub(super) fn new(origin: Vec3A, direction: Vec3A) -> Self {
+        let size = direction.abs();
+        let (axes, o, d) = if size.x >= size.y && size.x >= size.z {
+            ([1, 2, 0], origin.yzx(), direction.yzx())
+        } else if size.y >= size.z {
+            ([2, 0, 1], origin.zxy(), direction.zxy())
         } else {
-            2
+            ([0, 1, 2], origin, direction)
         };
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
-        let scale = 1.0 / direction[z];
-        let shear = [direction[axes[0]] * scale, direction[axes[1]] * scale, scale];
-        Self { axes, origin: axes.map(|k| origin[k]), shear }
+        let scale = 1.0 / d.z;
+        Self { axes, origin: o.to_array(), shear: [d.x * scale, d.y * scale, scale] }
     }
 }
 
@@ -80,14 +84,16 @@ impl Packet {
     /// The lanes whose triangle, seen from either side, the ray meets in (0, `limit`].
     #[inline(always)]
     pub(super) fn intersect(&self, ray: &Shear, limit: f32) -> Option<PacketHit> {
-        let (origin, shear) = (ray.origin.map(Four::splat), ray.shear.map(Four::splat));
-        let [a, b, c] = [&self.vertices[0], &self.vertices[1], &self.vertices[2]].map(|vertex| {
-            let [x, y, z] = ray.axes.map(|k| Four::new(&vertex[k]));
-            let depth = z - origin[2];
-            let x = (x - origin[0]) - shear[0] * depth;
-            let y = (y - origin[1]) - shear[1] * depth;
+        let splat = |[x, y, z]: [f32; 3]| [Four::splat(x), Four::splat(y), Four::splat(z)];
+        let (origin, shear) = (splat(ray.origin), splat(ray.shear));
+        let [kx, ky, kz] = ray.axes;
+        let project = |vertex: &[Lanes; 3]| {
+            let depth = Four::new(&vertex[kz]) - origin[2];
+            let x = (Four::new(&vertex[kx]) - origin[0]) - shear[0] * depth;
+            let y = (Four::new(&vertex[ky]) - origin[1]) - shear[1] * depth;
             [x, y, shear[2] * depth]
-        });
+        };
+        let [a, b, c] = [project(&self.vertices[0]), project(&self.vertices[1]), project(&self.vertices[2])];
         let edge = |p: [Four; 3], q: [Four; 3]| p[0] * q[1] - p[1] * q[0];
         let mut e = [edge(c, b), edge(a, c), edge(b, a)];
         let nought = Four::splat(0.0);

@@ -10,7 +10,7 @@ use std::io::{BufWriter, Write};
 use std::sync::Arc;
 use std::time::Instant;
 
-use ajar_render::bvh::{Geometry, InstanceGeometry, MeshGeometry, offset_origin};
+use ajar_render::bvh::{Geometry, InstanceGeometry, MeshGeometry, Met, offset_origin};
 use ajar_render::math::Frame;
 use ajar_render::ray::Ray;
 use ajar_render::rng::{Purpose, Rng};
@@ -41,11 +41,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         for (batch, (rays, distances)) in rays.chunks(BATCH).zip(distances.chunks_mut(BATCH)).enumerate() {
             nearest.time(batch, || {
                 for (ray, distance) in rays.iter().zip(distances) {
-                    *distance = geometry.intersect(ray, |_| true).map_or(f64::INFINITY, |hit| hit.t);
+                    *distance = geometry.nearest(ray).map_or(f64::INFINITY, |met| met.hit.t);
                 }
             });
             shadow.time(batch, || {
-                let is_blocked = |ray: &&Ray| geometry.occluded(&Ray { t_max: 2.0, ..**ray }, |_| true);
+                let is_blocked = |ray: &&Ray| geometry.blocked(&Ray { t_max: 2.0, ..**ray });
                 std::hint::black_box(rays.iter().filter(is_blocked).count());
             });
         }
@@ -80,11 +80,10 @@ fn rays(geometry: &Geometry) -> Vec<Ray> {
     let mut ray = Ray::new(SIZE * 0.5, DVec3::X);
     while rays.len() < RAYS {
         let start = SIZE * 0.98 * DVec3::new(rng.f64(), rng.f64(), rng.f64()) + 0.01 * SIZE;
-        let Some(hit) = geometry.intersect(&ray, |_| true).filter(|_| rng.f64() < 0.8) else {
+        let Some(Met { hit, vertices }) = geometry.nearest(&ray).filter(|_| rng.f64() < 0.8) else {
             ray = Ray::new(start, around(DVec3::Z, &mut rng));
             continue;
         };
-        let vertices = geometry.vertices(hit.instance, hit.triangle);
         let [a, b, c] = vertices;
         let n = (b - a).cross(c - a).normalize();
         let n = if n.dot(ray.direction) > 0.0 { -n } else { n };

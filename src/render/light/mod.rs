@@ -99,6 +99,11 @@ impl Lights {
         !self.dirac.is_empty()
     }
 
+    /// Whether some lights have an extent, so that eye paths can meet them.
+    pub fn can_be_met(&self) -> bool {
+        self.len() > self.dirac.len()
+    }
+
     /// The surroundings.
     pub fn environment(&self) -> Option<&Environment> {
         self.environment.as_ref()
@@ -115,6 +120,7 @@ impl Lights {
     }
 
     /// The triangle that is emitter number `emitter`.
+    #[inline]
     pub fn triangle(&self, emitter: u32) -> Option<&TriangleLight> {
         self.triangles.get((emitter as usize).checked_sub(self.first_triangle())?)
     }
@@ -122,11 +128,12 @@ impl Lights {
     /// Samples the light end x_0 of a path and its density P_L: per area on triangles, per solid angle for the
     /// surroundings, discrete for lights without extent. The choice does not depend on where it is used, so the same
     /// density holds for next-event estimation and for emission.
+    #[inline]
     pub fn sample(&self, choice: f64, u: [f64; 2]) -> Option<(Vertex, f64)> {
         let (index, pmf, rest) = self.choice.sample(choice)?;
         let emitter = index as u32;
         if let Some(light) = self.dirac.get(index) {
-            return Some((end(light.kind(), light.place(), emitter), pmf));
+            return Some((Vertex::isolated(light.kind(), light.place(), emitter), pmf));
         }
         if let Some(triangle) = self.triangle(emitter) {
             let [b, c] = warp::square_to_triangle(u);
@@ -135,10 +142,11 @@ impl Lights {
         let environment = self.environment.as_ref()?;
         let (_, direction) = environment.sample(rest, u);
         let density = environment.pdf(direction);
-        (density > 0.0).then(|| (end(Kind::Environment, direction, emitter), pmf * density))
+        (density > 0.0).then(|| (Vertex::isolated(Kind::Environment, direction, emitter), pmf * density))
     }
 
     /// Density P_L of a light end, as [`Lights::sample`] returns it.
+    #[inline]
     pub fn density(&self, x0: &Vertex) -> f64 {
         if x0.emitter == Vertex::NO_EMITTER {
             return 0.0;
@@ -154,7 +162,7 @@ impl Lights {
     /// A vertex at the surroundings in the unit direction `direction`, if there are any.
     pub fn surroundings(&self, direction: DVec3) -> Option<Vertex> {
         self.environment.as_ref()?;
-        Some(end(Kind::Environment, direction, self.environment_index() as u32))
+        Some(Vertex::isolated(Kind::Environment, direction, self.environment_index() as u32))
     }
 
     /// Samples how light leaves `x0`.
@@ -215,6 +223,7 @@ impl Lights {
 
 impl TriangleLight {
     /// The point of barycentric weights `uv` as a light end.
+    #[inline]
     fn vertex(&self, uv: [f64; 2], emitter: u32) -> Vertex {
         let [a, b, c] = self.vertices;
         Vertex {
@@ -228,20 +237,5 @@ impl TriangleLight {
             rounding: self.rounding,
             mode: Mode::Smooth,
         }
-    }
-}
-
-/// A light end that is not on a surface.
-fn end(kind: Kind, p: DVec3, emitter: u32) -> Vertex {
-    Vertex {
-        kind,
-        p,
-        ng: DVec3::Z,
-        frame: Frame { x: DVec3::X, y: DVec3::Y, z: DVec3::Z },
-        site: Site::default(),
-        bsdf: Bsdf::BLACK,
-        emitter,
-        rounding: 0.0,
-        mode: Mode::Smooth,
     }
 }

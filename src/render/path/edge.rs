@@ -18,6 +18,7 @@ pub struct Edge {
 impl Edge {
     /// The edge between a light-side and an eye-side vertex; `None` if they are closer than `shortest`, where f is 0 for
     /// every integrator (it kills the singularity in corners).
+    #[inline]
     pub fn between(light: &Vertex, eye: &Vertex, shortest: f64) -> Option<Self> {
         if light.infinite() {
             return Some(Self { to_eye: -light.p, length: f64::INFINITY, falloff: 1.0 });
@@ -34,6 +35,7 @@ impl Edge {
     /// * into a Dirac vertex: projected solid angle at the source;
     /// * to a light infinitely far: solid angle;
     /// * else area at the target.
+    #[inline]
     pub fn density(&self, p: f64, source: &Vertex, target: &Vertex, direction_is_fixed: bool) -> f64 {
         if !source.connectable() {
             p
@@ -51,6 +53,7 @@ impl Edge {
 
 impl Vertex {
     /// Whether rays leave it in one fixed direction, so that their native density is per area.
+    #[inline]
     pub fn direction_is_fixed(&self) -> bool {
         matches!(self.kind, Kind::DirectionalLight | Kind::Environment)
     }

@@ -28,6 +28,7 @@ pub struct Step {
 
 impl Vertex {
     /// Samples how a walk that came from `known` goes on.
+    #[inline]
     pub fn scatter(&self, side: Side, known: DVec3, u_lobe: f64, u: [f64; 2]) -> Option<Step> {
         let sample = self.bsdf.sample(side, self.frame.to_local(known), u_lobe, u)?;
         if sample.mode != Mode::Smooth {
@@ -51,19 +52,21 @@ impl Vertex {
     }
 
     fn dirac_scatter(&self, side: Side, known: DVec3, mode: Mode) -> Option<Step> {
-        let DiracStep { direction, factor, density } = self.dirac_step(side, known, mode)?;
+        let DiracStep { direction, factor, density, .. } = self.dirac_step(side, known, mode)?;
         let back = self.dirac_step(side.other(), direction, mode).map_or(0.0, |reverse| reverse.density);
         Some(Step { direction, weight: factor / density, density, back, mode })
     }
 
     /// Probability that a walk survives Russian roulette after `edges` edges: a function of the place alone, so that it
     /// is part of every density (design notes, evidence 10: the largest albedo of the material here).
+    #[inline]
     pub fn survival(&self, edges: usize) -> f64 {
         if edges < ROULETTE_DEPTH { 1.0 } else { self.bsdf.albedo_bound().clamp(0.05, 0.95) }
     }
 }
 
 /// (towards the light, towards the eye) for a walk that came from `known` and goes to `new`.
+#[inline]
 pub fn oriented(side: Side, known: DVec3, new: DVec3) -> (DVec3, DVec3) {
     match side {
         Side::TowardLight => (new, known),

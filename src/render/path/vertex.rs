@@ -69,45 +69,70 @@ pub struct DiracStep {
     pub factor: Rgb,
     /// Density of the step in the walk's direction, in the same convention.
     pub density: f64,
+    /// The part of the density that is the probability of choosing this event.
+    pub probability: f64,
 }
 
 impl Vertex {
     /// `emitter` of what does not emit.
     pub const NO_EMITTER: u32 = u32::MAX;
 
+    /// A vertex that is not on a surface and scatters nothing.
+    #[inline]
+    pub fn isolated(kind: Kind, p: DVec3, emitter: u32) -> Self {
+        Self {
+            kind,
+            p,
+            ng: DVec3::Z,
+            frame: Frame { x: DVec3::X, y: DVec3::Y, z: DVec3::Z },
+            site: Site::default(),
+            bsdf: Bsdf::BLACK,
+            emitter,
+            rounding: 0.0,
+            mode: Mode::Smooth,
+        }
+    }
+
     /// Whether a connection may end here: not in the middle of a Dirac event.
+    #[inline]
     pub fn connectable(&self) -> bool {
         self.mode == Mode::Smooth
     }
 
     /// Whether an eye path can meet it as a light.
+    #[inline]
     pub fn can_be_met(&self) -> bool {
         matches!(self.kind, Kind::Surface | Kind::Environment)
     }
 
     /// Start of a ray that leaves it in direction `w` and does not meet its own surface.
+    #[inline]
     pub fn leave(&self, w: DVec3) -> DVec3 {
         if self.kind == Kind::Surface { offset_origin(self.p, self.ng, w, self.rounding) } else { self.p }
     }
 
     /// It as an end of a visibility test.
+    #[inline]
     pub fn anchor(&self) -> Anchor {
         let normal = if self.kind == Kind::Surface { self.ng } else { DVec3::ZERO };
         Anchor { position: self.p, normal, rounding: self.rounding }
     }
 
     /// Whether it lies infinitely far.
+    #[inline]
     pub fn infinite(&self) -> bool {
         matches!(self.kind, Kind::DirectionalLight | Kind::Environment)
     }
 
     /// |cos| of `w` to the geometric normal for surfaces, 1 for everything without a surface measure.
+    #[inline]
     pub fn projected(&self, w: DVec3) -> f64 {
         if self.kind == Kind::Surface { self.ng.dot(w).abs() } else { 1.0 }
     }
 
     /// |w·Ns| / |w·Ng| (1 if either is on the wrong side: then the whole factor is 0 anyway), or `None` where shading
     /// and geometric normal disagree about the side of `w` or `w` grazes the surface (Veach 1997 §5.3.4).
+    #[inline]
     fn shading_ratio(&self, w: DVec3) -> Option<f64> {
         let (s, g) = (self.frame.z.dot(w), self.ng.dot(w));
         (s * g > 0.0 && g.abs() >= MIN_COSINE).then(|| (s / g).abs())
@@ -116,6 +141,7 @@ impl Vertex {
     /// Scattering of light that comes from `w_l` and leaves to `w_e`, smooth lobes only (mlt.md §1.3). `value` is the
     /// vertex's factor of f: the radiance BSDF times |w_l·Ns| / |w_l·Ng|, since geometric terms carry geometric cosines.
     /// The densities are per solid angle.
+    #[inline]
     pub fn evaluate(&self, w_l: DVec3, w_e: DVec3) -> Evaluation {
         let (Some(ratio), Some(_)) = (self.shading_ratio(w_l), self.shading_ratio(w_e)) else {
             return Evaluation::default();
@@ -140,6 +166,11 @@ impl Vertex {
             Side::TowardLight => event.probability * event.eta_scale * stretch,
             Side::TowardEye => event.probability,
         };
-        (density > 0.0).then(|| DiracStep { direction, factor: event.reflectance * stretch, density })
+        (density > 0.0).then(|| DiracStep {
+            direction,
+            factor: event.reflectance * stretch,
+            density,
+            probability: event.probability,
+        })
     }
 }

@@ -9,7 +9,7 @@ use std::{
     panic::{AssertUnwindSafe, catch_unwind},
 };
 
-use ajar_scene::{Diagnostic, Image, ImageSource};
+use ajar_scene::{Cause, Diagnostic, Image, ImageSource};
 use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 
 use super::{Bitmap, Texels, exr};
@@ -82,7 +82,7 @@ pub(super) fn probe(image: &Image) -> Result<Header, Diagnostic> {
     if header.width.max(header.height) > MAX_SIZE {
         let Header { width, height, .. } = header;
         let why = format!("{width} × {height} texels, more than {MAX_SIZE} on a side");
-        return Err(refuse(image, &why).hint("scale it down"));
+        return Err(refuse(image, &why).because(Cause::Resource).hint("scale it down"));
     }
     Ok(header)
 }
@@ -90,7 +90,8 @@ pub(super) fn probe(image: &Image) -> Result<Header, Diagnostic> {
 pub(super) fn too_large(image: &Image, header: &Header, left: u64) -> Diagnostic {
     let mib = |bytes: u64| bytes.div_ceil(1 << 20);
     let why = format!("needs {} MiB, {} MiB are left for textures", mib(header.bytes), left >> 20);
-    refuse(image, &why).hint("scale images down or raise the memory limit")
+    let hint = "scale images down or raise the memory limit";
+    refuse(image, &why).because(Cause::Resource).hint(hint)
 }
 
 /// An error about `image`.

@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::World;
 use crate::{
-    bvh::{Hit, segment},
+    bvh::{Hit, Met, segment},
     math::Rgb,
-    path::{Edge, Kind, Vertex},
+    path::{Edge, Kind, Site, Vertex},
     ray::Ray,
 };
 
@@ -16,51 +16,85 @@ impl World {
     /// The first surface that a ray meets. `from_lens` lets it through the backs of culled materials. Where opacity is
     /// partial, the surface is met with that probability, decided by a hash of `seed` and the hit.
     pub fn trace(&self, origin: DVec3, direction: DVec3, from_lens: bool, seed: u32) -> Option<Vertex> {
+        let mut vertex = Vertex::isolated(Kind::Surface, DVec3::ZERO, Vertex::NO_EMITTER);
+        self.trace_into(origin, direction, from_lens, seed, &mut vertex).then_some(vertex)
+    }
+
+    /// As [`World::trace`], in place: vertices are too large to be handed around at every step. If it meets nothing, the
+    /// vertex stays as it is.
+    pub fn trace_into(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        from_lens: bool,
+        seed: u32,
+        vertex: &mut Vertex,
+    ) -> bool {
         let ray = Ray::new(origin, direction);
-        let hit = if self.has_alpha || (from_lens && self.has_culling) {
-            self.geometry.intersect(&ray, |hit| {
-                if from_lens && self.culled(hit, direction) {
-                    return false;
-                }
-                let opacity = self.opacity(hit);
-                opacity >= 1.0 || uniform(hit, seed) < opacity
-            })
+        let met = if self.has_alpha || (from_lens && self.has_culling) {
+            self.nearest_solid(&ray, from_lens, seed)
         } else {
-            self.geometry.intersect(&ray, |_| true)
-        }?;
-        Some(self.vertex(&hit))
+            self.geometry.nearest(&ray)
+        };
+        let Some(Met { hit, vertices }) = met else { return false };
+        let uv = [f64::from(hit.u), f64::from(hit.v)];
+        self.set_surface(Site { instance: hit.instance, triangle: hit.triangle, uv }, &vertices, vertex);
+        true
+    }
+
+    fn nearest_solid(&self, ray: &Ray, from_lens: bool, seed: u32) -> Option<Met> {
+        self.geometry.intersect(ray, |hit| {
+            if from_lens && self.culled(hit, ray.direction) {
+                return false;
+            }
+            let opacity = self.opacity(hit);
+            opacity >= 1.0 || uniform(hit, seed) < opacity
+        })
     }
 
     /// Share of light that crosses the edge: 1 or 0, or the product of what partial opacities let through, times
     /// absorption.
     pub fn transmittance(&self, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
+        let passed = self.passed(light, eye);
+        if passed > 0.0 { self.absorption(light, eye, edge) * passed } else { Rgb::ZERO }
+    }
+
+    /// Share of light that surfaces on the way let through: 1 or 0, or the product of what partial opacities leave.
+    pub fn passed(&self, light: &Vertex, eye: &Vertex) -> f64 {
         let from_lens = eye.kind == Kind::Lens;
         let ray = if light.infinite() {
             Ray::new(eye.leave(light.p), light.p)
         } else {
             segment(&eye.anchor(), &light.anchor())
         };
-        let passed = Cell::new(1.0);
-        let blocked = if self.has_alpha || (from_lens && self.has_culling) {
-            self.geometry.occluded(&ray, |hit| {
-                if from_lens && self.culled(hit, ray.direction) {
-                    return false;
-                }
-                passed.set(passed.get() * (1.0 - self.opacity(hit)));
-                passed.get() <= 0.0
-            })
+        if self.has_alpha || (from_lens && self.has_culling) {
+            self.passed_along(&ray, from_lens)
         } else {
-            self.geometry.occluded(&ray, |_| true)
-        };
-        if blocked { Rgb::ZERO } else { self.absorption(light, eye, edge) * passed.get() }
+            f64::from(u8::from(!self.geometry.blocked(&ray)))
+        }
+    }
+
+    /// Product of what the surfaces along a ray let through.
+    fn passed_along(&self, ray: &Ray, from_lens: bool) -> f64 {
+        let passed = Cell::new(1.0);
+        let blocked = self.geometry.occluded(ray, |hit| {
+            if from_lens && self.culled(hit, ray.direction) {
+                return false;
+            }
+            passed.set(passed.get() * (1.0 - self.opacity(hit)));
+            passed.get() <= 0.0
+        });
+        if blocked { 0.0 } else { passed.get() }
     }
 
     /// Share of light that the medium along the edge leaves. The medium is that of the light end if the edge leaves it
     /// inwards, else that of the eye end: a rule about the path, not about the direction it was built in.
+    #[inline]
     pub fn absorption(&self, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
-        if !self.has_absorption {
-            return Rgb::ONE;
-        }
+        if self.has_absorption { self.absorbed(light, eye, edge) } else { Rgb::ONE }
+    }
+
+    fn absorbed(&self, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
         let inside = |vertex: &Vertex, w: DVec3| {
             (vertex.kind == Kind::Surface && vertex.ng.dot(w) < 0.0)
                 .then(|| self.material_of(vertex).absorption())

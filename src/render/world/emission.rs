@@ -11,6 +11,7 @@ use crate::{
 impl World {
     /// What the light end `x0` sends in `direction`: radiance for surfaces and surroundings (cd/m²), intensity (cd) for
     /// lights with a position, illuminance (lux) for directional ones.
+    #[inline]
     pub fn emitted(&self, x0: &Vertex, direction: DVec3) -> Rgb {
         if x0.kind != Kind::Surface {
             return self.lights.distant_emission(x0, direction);

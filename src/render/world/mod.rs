@@ -11,13 +11,11 @@ use ajar_scene::{Id, Mesh, Node, Scene};
 use glam::{DAffine3, DMat3, DVec3};
 
 use crate::{
-    bsdf::{Bsdf, Mode},
     bvh::Geometry,
     camera::Camera,
     light::Lights,
     material::Material,
-    math::Frame,
-    path::{Kind, Site, Vertex},
+    path::{Kind, Vertex},
     texture::Textures,
 };
 
@@ -85,17 +83,7 @@ impl World {
 
     /// The vertex at the lens point `p`.
     pub fn lens_vertex(&self, p: DVec3) -> Vertex {
-        Vertex {
-            kind: Kind::Lens,
-            p,
-            ng: DVec3::Z,
-            frame: Frame { x: DVec3::X, y: DVec3::Y, z: DVec3::Z },
-            site: Site::default(),
-            bsdf: Bsdf::BLACK,
-            emitter: Vertex::NO_EMITTER,
-            rounding: 0.0,
-            mode: Mode::Smooth,
-        }
+        Vertex::isolated(Kind::Lens, p, Vertex::NO_EMITTER)
     }
 
     /// Whether rays leave `source` in one direction only, so that densities are per area.

@@ -16,17 +16,25 @@ use crate::{
 #[derive(Clone, Copy)]
 pub(super) struct Point<'a> {
     mesh: &'a Mesh,
-    corners: [usize; 3],
+    triangle: u32,
     weights: [f64; 3],
 }
 
 impl Point<'_> {
+    /// Indices of the triangle's vertices.
+    #[inline]
+    fn corners(&self) -> [usize; 3] {
+        let [a, b, c] = self.mesh.triangles[self.triangle as usize];
+        [a as usize, b as usize, c as usize]
+    }
+
     fn mix2(&self, values: &[Vec2]) -> Vec2 {
-        let [a, b, c] = self.corners.map(|i| values[i].as_dvec2());
+        let [a, b, c] = self.corners().map(|i| values[i].as_dvec2());
         (a * self.weights[0] + b * self.weights[1] + c * self.weights[2]).as_vec2()
     }
 
-    fn mix3(&self, values: [DVec3; 3]) -> DVec3 {
+    #[inline]
+    fn mix3(&self, values: &[DVec3; 3]) -> DVec3 {
         values[0] * self.weights[0] + values[1] * self.weights[1] + values[2] * self.weights[2]
     }
 }
@@ -38,16 +46,16 @@ impl Place for Point<'_> {
 
     fn color(&self) -> Vec4 {
         let Some(colors) = &self.mesh.colors else { return Vec4::ONE };
-        let [a, b, c] = self.corners.map(|i| colors[i].as_dvec4());
+        let [a, b, c] = self.corners().map(|i| colors[i].as_dvec4());
         (a * self.weights[0] + b * self.weights[1] + c * self.weights[2]).as_vec4()
     }
 }
 
 impl World {
+    #[inline]
     pub(super) fn point(&self, instance: &Instance, triangle: u32, uv: [f64; 2]) -> Point<'_> {
         let mesh = &self.scene.meshes[instance.mesh];
-        let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
-        Point { mesh, corners, weights: [1.0 - uv[0] - uv[1], uv[0], uv[1]] }
+        Point { mesh, triangle, weights: [1.0 - uv[0] - uv[1], uv[0], uv[1]] }
     }
 
     /// The material of a surface vertex.
@@ -90,53 +98,44 @@ impl World {
         self.materials[instance.material as usize].opacity(&self.textures, &point)
     }
 
-    /// The vertex at a hit.
-    pub(super) fn vertex(&self, hit: &Hit) -> Vertex {
-        self.surface(Site {
-            instance: hit.instance,
-            triangle: hit.triangle,
-            uv: [f64::from(hit.u), f64::from(hit.v)],
-        })
-    }
-
     /// The vertex at a place of a surface, its mode smooth.
     pub fn surface(&self, site: Site) -> Vertex {
+        let mut vertex = Vertex::isolated(Kind::Surface, DVec3::ZERO, Vertex::NO_EMITTER);
+        self.set_surface(site, &self.geometry.vertices(site.instance, site.triangle), &mut vertex);
+        vertex
+    }
+
+    /// As [`World::surface`], in place; `vertices` are those of the triangle.
+    #[inline]
+    pub(super) fn set_surface(&self, site: Site, vertices: &[DVec3; 3], vertex: &mut Vertex) {
         let instance = &self.instances[site.instance as usize];
         let material = &self.materials[instance.material as usize];
         let point = self.point(instance, site.triangle, site.uv);
-        let corners = self.geometry.vertices(site.instance, site.triangle);
-        let [a, b, c] = corners;
+        let [a, b, c] = *vertices;
         let ng = (b - a).cross(c - a).normalize_or(DVec3::Z) * instance.handedness;
-        Vertex {
-            kind: Kind::Surface,
-            p: point.mix3(corners),
-            ng,
-            frame: self.shading_frame(instance, material, &point, site.triangle, ng),
-            site,
-            bsdf: material.bsdf(&self.textures, &point),
-            emitter: instance.first_emitter.map_or(Vertex::NO_EMITTER, |first| first + site.triangle),
-            rounding: self.geometry.rounding(site.instance, &corners),
-            mode: Mode::Smooth,
-        }
+        vertex.kind = Kind::Surface;
+        vertex.p = point.mix3(vertices);
+        vertex.ng = ng;
+        vertex.frame = self.shading_frame(instance, material, &point, ng);
+        vertex.site = site;
+        material.set_bsdf(&self.textures, &point, &mut vertex.bsdf);
+        vertex.emitter = instance.first_emitter.map_or(Vertex::NO_EMITTER, |first| first + site.triangle);
+        vertex.rounding = self.geometry.rounding(site.instance, vertices);
+        vertex.mode = Mode::Smooth;
     }
 
     /// Shading frame: interpolated normal on the front side, tangent, normal map. It depends on the place alone, never on
     /// who looks (mlt.md §1.3).
-    fn shading_frame(
-        &self,
-        instance: &Instance,
-        material: &Material,
-        point: &Point<'_>,
-        triangle: u32,
-        ng: DVec3,
-    ) -> Frame {
+    #[inline]
+    fn shading_frame(&self, instance: &Instance, material: &Material, point: &Point<'_>, ng: DVec3) -> Frame {
         let in_front = |n: DVec3| if n.dot(ng) < 0.0 { -n } else { n };
         let smooth = point.mesh.normals.as_ref().and_then(|normals| {
-            let local = point.mix3(point.corners.map(|i| normals[i].as_dvec3()));
+            let [a, b, c] = point.corners();
+            let local = point.mix3(&[normals[a].as_dvec3(), normals[b].as_dvec3(), normals[c].as_dvec3()]);
             (instance.normal_to_world * local).try_normalize()
         });
         let ns = smooth.map_or(ng, in_front);
-        let Some(tangent) = self.tangent(instance, point, triangle) else { return Frame::from_z(ns) };
+        let Some(tangent) = self.tangent(instance, point) else { return Frame::from_z(ns) };
         let frame = Frame::from_zx(ns, instance.to_world.transform_vector3(tangent.truncate()));
         let Some(mapped) = material.mapped_normal(&self.textures, point) else { return frame };
         let bitangent = frame.y * tangent.w * instance.handedness;
@@ -144,15 +143,15 @@ impl World {
         n.map_or(frame, |n| Frame::from_zx(in_front(n), frame.x))
     }
 
-    fn tangent(&self, instance: &Instance, point: &Point<'_>, triangle: u32) -> Option<glam::DVec4> {
+    fn tangent(&self, instance: &Instance, point: &Point<'_>) -> Option<glam::DVec4> {
         let corners = match &self.tangents[instance.mesh.index()] {
-            Some(generated) => generated[triangle as usize],
+            Some(generated) => generated[point.triangle as usize],
             None => {
                 let given = point.mesh.tangents.as_ref()?;
-                point.corners.map(|i| given[i])
+                point.corners().map(|i| given[i])
             }
         };
-        let direction = point.mix3(corners.map(|t| t.truncate().as_dvec3()));
+        let direction = point.mix3(&corners.map(|t| t.truncate().as_dvec3()));
         Some(direction.extend(if corners[0].w < 0.0 { -1.0 } else { 1.0 }))
     }
 }

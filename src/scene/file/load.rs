@@ -13,15 +13,18 @@ use super::{
     texture::Assets,
     value::text,
 };
-use crate::{Diagnostic, ImportRequest, Imported, Node, OutputSettings, RenderSettings, Scene, Severity};
+use crate::{
+    Diagnostic, ImportRequest, Imported, Node, OutputSettings, Overrides, RenderSettings, Scene, Severity,
+};
 
-/// Reads a scene file. `import` turns each file it names into a scene; it is given the folder of the scene file as one
-/// more folder that may be read.
+/// Reads a scene file below changes from the command line. `import` turns each file it names into a scene; it is given
+/// the folder of the scene file as one more folder that may be read.
 ///
 /// # Errors
 /// All errors that were found, in the order of the file, with the warnings among them.
 pub fn load(
     path: &Path,
+    overrides: &Overrides,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
     let refuse = |message: String| vec![Diagnostic::error(message).in_file(path)];
@@ -47,9 +50,34 @@ pub fn load(
 
     let request = ImportRequest::new(path);
     let assets = Assets { request: &request, scene: Scene::default(), files: vec![path.to_owned()] };
-    let keys = Keys::new(&report, String::new(), document.span(), document.get_ref());
-    let (mut file, imported) = read(keys, assets, import);
-    file.diagnostics = [report.finish(), imported].concat();
+    let changes = overrides.table();
+    let keys = Keys::new(&report, Some(&document), changes.get_ref());
+    let (file, imported) = read(keys, assets, import);
+    sound(file, [report.finish(), imported].concat())
+}
+
+/// Changes from the command line applied to an imported asset, as if a scene file imported nothing else.
+///
+/// # Errors
+/// What is wrong with the changes.
+pub fn load_asset(
+    path: &Path,
+    overrides: &Overrides,
+    imported: Imported,
+) -> Result<SceneFile, Vec<Diagnostic>> {
+    let Imported { scene, diagnostics, files } = imported;
+    let request = ImportRequest::new(path);
+    let report = Report::new(path, "");
+    let changes = overrides.table();
+    let keys = Keys::new(&report, None, changes.get_ref());
+    let nothing = |_: &ImportRequest| Ok(Imported::default());
+    let (file, _) = read(keys, Assets { request: &request, scene, files }, &nothing);
+    sound(file, [report.finish(), diagnostics].concat())
+}
+
+/// The file with what was said about it, unless that is an error.
+fn sound(file: SceneFile, diagnostics: Vec<Diagnostic>) -> Result<SceneFile, Vec<Diagnostic>> {
+    let file = SceneFile { diagnostics, ..file };
     if file.diagnostics.iter().any(|it| it.severity == Severity::Error) {
         return Err(file.diagnostics);
     }
@@ -64,13 +92,13 @@ fn read(
 ) -> (SceneFile, Vec<Diagnostic>) {
     let mut imported = Vec::new();
     let mut complete = true;
-    for table in keys.tables("import") {
+    for table in keys.tables("import", import_name) {
         complete &= add_import(table, &mut assets, &mut imported, import);
     }
-    for (index, table) in keys.tables("camera").into_iter().enumerate() {
+    for (index, table) in keys.tables("camera", own_name).into_iter().enumerate() {
         camera::read(table, index, &mut assets.scene);
     }
-    for (index, table) in keys.tables("light").into_iter().enumerate() {
+    for (index, table) in keys.tables("light", own_name).into_iter().enumerate() {
         light::read(table, index, &mut assets);
     }
     if let Some(mut tables) = keys.table("material") {
@@ -90,6 +118,16 @@ fn read(
     keys.finish();
     let files = assets.files;
     (SceneFile { scene: assets.scene, render, output, diagnostics: Vec::new(), files }, imported)
+}
+
+fn own_name(table: &DeTable<'_>) -> Option<String> {
+    table.get("name").and_then(|name| name.get_ref().as_str()).map(str::to_owned)
+}
+
+/// An import is called after its file where nothing else is said.
+fn import_name(table: &DeTable<'_>) -> Option<String> {
+    let file = table.get("file").and_then(|file| file.get_ref().as_str());
+    own_name(table).or_else(|| file.map(|file| stem(Path::new(file))))
 }
 
 /// Imports one file below a node of its own. Returns whether that worked.

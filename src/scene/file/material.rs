@@ -12,7 +12,7 @@ use super::{
     texture::{Assets, Use},
     value::{ANY, choice, distance_or_infinity, flag, number, numbers},
 };
-use crate::{AlphaMode, Diagnostic, Input, Material, NormalMap};
+use crate::{AlphaMode, Input, Material, NormalMap};
 
 /// One change, applied to every material whose name fits.
 type Edit = Box<dyn Fn(&mut Material)>;
@@ -41,12 +41,11 @@ fn unmatched(pattern: &str, keys: &Keys<'_>, assets: &Assets<'_>) {
         names
     };
     if glob::is_glob(pattern) {
-        let message = "no imported material fits this pattern";
-        keys.report.push(&keys.span(), Diagnostic::warning(message).element(keys.path()));
+        keys.warn("no imported material fits this pattern");
     } else {
         let complaint =
             Complaint::new("no import has a material of this name").hint(advice(pattern, names()));
-        keys.report.error(&keys.span(), keys.path(), complaint);
+        keys.reject(complaint);
     }
 }
 

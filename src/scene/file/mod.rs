@@ -10,6 +10,7 @@ mod keys;
 mod light;
 mod load;
 mod material;
+mod overrides;
 mod placement;
 mod report;
 mod settings;
@@ -20,7 +21,8 @@ mod value;
 
 use std::path::PathBuf;
 
-pub use load::load;
+pub use load::{load, load_asset};
+pub use overrides::Overrides;
 
 use crate::{Diagnostic, OutputSettings, RenderSettings, Scene};
 

@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use crate::Diagnostic;
+use crate::{Cause, Diagnostic};
 
 /// What is wrong with one value, before its place is known.
 #[derive(Debug)]
@@ -58,6 +58,18 @@ impl<'a> Report<'a> {
         let line = before.matches('\n').count() + 1;
         let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
         self.found.borrow_mut().push(diagnostic.in_file(self.path).at(line, column));
+    }
+
+    /// Adds a diagnostic about an element that stands on the command line.
+    pub fn push_elsewhere(&self, diagnostic: Diagnostic) {
+        let element = format!("--set {}", diagnostic.element.as_deref().unwrap_or_default());
+        self.found.borrow_mut().push(diagnostic.element(element).because(Cause::Usage));
+    }
+
+    /// Adds an error about an element that stands on the command line.
+    pub fn usage(&self, element: &str, complaint: Complaint) {
+        let diagnostic = Diagnostic::error(complaint.message).element(element);
+        self.push_elsewhere(Diagnostic { hint: complaint.hint, ..diagnostic });
     }
 
     /// Adds an error about an element.

@@ -1,6 +1,8 @@
 //! Meshes: attributes of one length, finite numbers, indices that lead somewhere.
 
-use super::{Findings, placed_label};
+use std::collections::HashSet;
+
+use super::{Findings, label, placed_label};
 use crate::{Diagnostic, Mesh, Scene};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
@@ -22,6 +24,30 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         }
         indices(mesh, &name, findings);
         attributes(mesh, &name, findings);
+    }
+    uv_sets(scene, findings);
+}
+
+/// Every pair of a mesh and a material that are placed together: are there the texture coordinates that textures ask for?
+fn uv_sets(scene: &Scene, findings: &mut Findings) {
+    let mut met = HashSet::new();
+    for placed in scene.placed() {
+        for &id in &placed.node.meshes {
+            let Some(mesh) = scene.meshes.get(id) else { continue };
+            let Some(material_id) = placed.node.material.or(mesh.material) else { continue };
+            let Some(material) = scene.materials.get(material_id) else { continue };
+            if !met.insert((id.index(), material_id.index())) {
+                continue;
+            }
+            let sets = material.textures().filter_map(|texture| Some(scene.textures.get(texture)?.uv_set));
+            let Some(missing) = sets.filter(|&set| set as usize >= mesh.uvs.len()).min() else { continue };
+            let name = || placed_label(scene, "mesh", &mesh.name, id.index(), Some(placed.id.index()));
+            let material = label("material", &material.name, material_id.index());
+            let message = format!(
+                "{material} has a texture on UV set {missing}, which the mesh lacks; its colour at (0, 0) is used"
+            );
+            findings.add("textures on UV sets that meshes lack", name, Diagnostic::warning(message));
+        }
     }
 }
 

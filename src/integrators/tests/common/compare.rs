@@ -50,3 +50,49 @@ pub fn assert_same(name: &str, a: &Film, b: &Film, width: usize) {
     println!("{name}: largest block z {blocks:.2}, image z {total:.2}");
     assert!(blocks < 4.5 && total < 4.0, "{name}: largest block z {blocks:.2}, image z {total:.2}");
 }
+
+/// Mean colours of blocks of 8 × 8 pixels, and of the image, in each round. Neighbouring pixels of a Metropolis image are
+/// correlated; rounds are not.
+pub struct Blocks {
+    pub rounds: Vec<Vec<Rgb>>,
+}
+
+/// Side of a block, pixels.
+pub const SIDE: usize = 8;
+
+impl Blocks {
+    /// Adds a film of a single round.
+    pub fn add(&mut self, film: &Film, width: usize) {
+        let height = film.pixels() / width;
+        let mut means = Vec::new();
+        for y in (0..height / SIDE * SIDE).step_by(SIDE) {
+            for x in (0..width / SIDE * SIDE).step_by(SIDE) {
+                means.push(block(film, width, x, y, SIDE).0);
+            }
+        }
+        means.push(block(film, width, 0, 0, width.min(height)).0);
+        self.rounds.push(means);
+    }
+
+    /// Mean and variance of the mean of a block.
+    fn estimate(&self, block: usize) -> (Rgb, Rgb) {
+        let n = self.rounds.len() as f64;
+        let mean = self.rounds.iter().map(|r| r[block]).sum::<Rgb>() / n;
+        let squares = self.rounds.iter().map(|r| (r[block] - mean).powf(2.0)).sum::<Rgb>();
+        (mean, squares / (n * (n - 1.0)))
+    }
+
+    /// |z| of the worst block and of the image.
+    pub fn z_scores(&self, other: &Self) -> (f64, f64) {
+        let last = self.rounds[0].len() - 1;
+        let z = |block| largest_z(self.estimate(block), other.estimate(block));
+        ((0..last).map(z).fold(0.0, f64::max), z(last))
+    }
+}
+
+/// Fails unless the images agree.
+pub fn assert_blocks_agree(name: &str, a: &Blocks, b: &Blocks) {
+    let (blocks, total) = a.z_scores(b);
+    println!("{name}: largest block z {blocks:.2}, image z {total:.2}");
+    assert!(blocks < 4.5 && total < 4.0, "{name}: largest block z {blocks:.2}, image z {total:.2}");
+}

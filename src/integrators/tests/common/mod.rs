@@ -2,7 +2,9 @@
 #![allow(dead_code, clippy::unwrap_used, reason = "shared by several tests; a failing test panics")]
 
 pub mod compare;
+pub mod scenes;
 pub mod shapes;
+pub mod stationarity;
 
 use ajar_integrators::{Context, Integrator, Settings, Window, brightness};
 use ajar_render::{
@@ -96,11 +98,33 @@ pub fn settings(world: &World, seed: u64, max_depth: usize, samples_per_round: u
 pub fn render(world: &World, integrator: &dyn Integrator, settings: &Settings, rounds: u32) -> Film {
     let cancel = AtomicBool::new(false);
     let mut film = Film::new(settings.window.pixels(), brightness(world, settings.max_depth));
+    let prepared = integrator.prepare(Context { world, settings, cancel: &cancel });
     for round in 0..rounds {
         let deposits = film.round();
-        integrator.render_round(&Context { world, settings, cancel: &cancel }, round, &deposits);
-        film.merge(&deposits, integrator.scale(settings));
+        prepared.render(round, &deposits);
+        film.merge(&deposits, prepared.scale());
     }
     assert_eq!(film.rejected(), 0);
     film
+}
+
+/// Block means of `rounds` rounds, each on its own.
+pub fn render_blocks(
+    world: &World,
+    integrator: &dyn Integrator,
+    settings: &Settings,
+    rounds: u32,
+) -> compare::Blocks {
+    let cancel = AtomicBool::new(false);
+    let unit = brightness(world, settings.max_depth);
+    let prepared = integrator.prepare(Context { world, settings, cancel: &cancel });
+    let mut blocks = compare::Blocks { rounds: Vec::new() };
+    for round in 0..rounds {
+        let mut film = Film::new(settings.window.pixels(), unit);
+        let deposits = film.round();
+        prepared.render(round, &deposits);
+        film.merge(&deposits, prepared.scale());
+        blocks.add(&film, world.camera.width as usize);
+    }
+    blocks
 }

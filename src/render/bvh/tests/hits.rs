@@ -4,7 +4,9 @@ use std::cell::Cell;
 
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::{Geometry, MeshGeometry, direction, icosphere, in_cube, placed, rng, soup, world};
+use super::{
+    Geometry, MeshGeometry, blocked, direction, icosphere, in_cube, nearest, placed, rng, soup, world,
+};
 use crate::bvh::Hit;
 use crate::ray::Ray;
 
@@ -40,8 +42,8 @@ fn nearest_hits_are_those_of_brute_force() {
                 ray.t_max = rng.f64();
             }
             let truth = brute_force(&geometry, count as u32, &ray);
-            let found = geometry.intersect(&ray, |_| true);
-            assert_eq!(found.is_some(), geometry.occluded(&ray, |_| true));
+            let found = nearest(&geometry, &ray);
+            assert_eq!(found.is_some(), blocked(&geometry, &ray));
             met += usize::from(found.is_some());
             match (truth.first(), found) {
                 (Some(&(t, triangle)), Some(hit)) if triangle == hit.triangle => {
@@ -65,8 +67,8 @@ fn nearest_hits_are_those_of_brute_force() {
 fn accept_decides_which_hits_count() {
     let geometry = world(icosphere(3));
     let ray = Ray::new(DVec3::new(0.1, 0.2, -5.0), DVec3::Z);
-    let near = geometry.intersect(&ray, |_| true).unwrap();
-    let far = geometry.intersect(&ray, |hit| hit.triangle != near.triangle).unwrap();
+    let near = nearest(&geometry, &ray).unwrap();
+    let far = geometry.intersect(&ray, |hit| hit.triangle != near.triangle).unwrap().hit;
     assert!((near.t - 4.0).abs() < 0.1 && (far.t - 6.0).abs() < 0.1);
     assert!(geometry.occluded(&ray, |hit| hit.triangle == far.triangle));
     assert!(geometry.intersect(&ray, |_| false).is_none() && !geometry.occluded(&ray, |_| false));
@@ -85,7 +87,7 @@ fn accept_decides_which_hits_count() {
     geometry.intersect(&ray, offered);
     assert_eq!(seen.get(), 2);
 
-    let until = |t_max: f64| geometry.occluded(&Ray { t_max, ..ray }, |_| true);
+    let until = |t_max: f64| blocked(&geometry, &Ray { t_max, ..ray });
     assert!(!until(near.t - 1e-5) && until(near.t + 1e-5) && !until(0.0) && !until(-1.0) && !until(f64::NAN));
 }
 
@@ -102,7 +104,7 @@ fn degenerate_triangles_and_rays_meet_nothing() {
             let target = DVec3::X * rng.f64() * 3.0;
             let origin = in_cube(&mut rng);
             let ray = Ray::new(origin, (target - origin).normalize());
-            assert!(geometry.intersect(&ray, |_| true).is_none());
+            assert!(nearest(&geometry, &ray).is_none());
         }
         assert_eq!(geometry.bounds(), (DVec3::ZERO, DVec3::ZERO));
     }
@@ -111,12 +113,12 @@ fn degenerate_triangles_and_rays_meet_nothing() {
     mesh.triangles.push([0, 1, 6]);
     let geometry = world(mesh);
     let down = Ray::new(DVec3::new(0.2, 0.2, 1.0), -DVec3::Z);
-    assert_eq!(geometry.intersect(&down, |hit| hit.triangle == 8).unwrap().triangle, 8);
+    assert_eq!(geometry.intersect(&down, |hit| hit.triangle == 8).unwrap().hit.triangle, 8);
     assert_eq!(geometry.vertices(0, 1), [DVec3::ZERO, DVec3::X, DVec3::X]);
     for bad in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::splat(1e-300), DVec3::splat(1e300)] {
         for ray in [Ray::new(down.origin, bad), Ray::new(bad, -DVec3::Z), Ray::new(bad, bad)] {
-            geometry.intersect(&ray, |_| true);
-            geometry.occluded(&ray, |_| true);
+            nearest(&geometry, &ray);
+            blocked(&geometry, &ray);
         }
     }
 }
@@ -134,7 +136,7 @@ fn copies_without_end_do_not_harm() {
     }
     let geometry = world(mesh);
     let ray = Ray::new(DVec3::new(0.2, 0.2, 1.0), -DVec3::Z);
-    let hit = geometry.intersect(&ray, |_| true).unwrap();
+    let hit = nearest(&geometry, &ray).unwrap();
     assert_eq!((hit.triangle, hit.t), (0, 1.0));
 }
 

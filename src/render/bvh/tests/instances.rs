@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::{Geometry, InstanceGeometry, direction, icosphere, in_cube, lumpy, rng};
+use super::{Geometry, InstanceGeometry, blocked, direction, icosphere, in_cube, lumpy, nearest, rng};
 use crate::ray::Ray;
 
 fn maps() -> Vec<DAffine3> {
@@ -37,8 +37,8 @@ fn placements_under_the_top_level_look_like_baked_ones() {
         let middle = DVec3::new(1.5, -2.0, 1.0);
         let origin = middle + in_cube(&mut rng) * 6.0;
         let ray = Ray::new(origin, (middle + in_cube(&mut rng) * 2.0 - origin).normalize());
-        let (a, b) = (own.intersect(&ray, |_| true), baked.intersect(&ray, |_| true));
-        assert_eq!(own.occluded(&ray, |_| true), a.is_some());
+        let (a, b) = (nearest(&own, &ray), nearest(&baked, &ray));
+        assert_eq!(blocked(&own, &ray), a.is_some());
         met += usize::from(a.is_some());
         match (a, b) {
             // Which triangle of the flat placement is met is up to rounding.
@@ -74,7 +74,7 @@ fn many_placements_cost_the_memory_of_one_mesh() {
     let extra = many.memory() - single.memory();
     assert!(extra < 10_000 * 350, "{} and {extra} bytes", single.memory());
     assert!(single.memory() < 131_072 * 110, "{}", single.memory());
-    let hits = (0..1000)
-        .filter(|_| many.occluded(&Ray::new(in_cube(&mut rng) * 100.0, direction(&mut rng)), |_| true));
+    let hits =
+        (0..1000).filter(|_| blocked(&many, &Ray::new(in_cube(&mut rng) * 100.0, direction(&mut rng))));
     assert!(hits.count() > 300);
 }

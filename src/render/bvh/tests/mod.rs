@@ -10,7 +10,8 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::{Geometry, InstanceGeometry, MeshGeometry};
+use super::{Geometry, Hit, InstanceGeometry, MeshGeometry};
+use crate::ray::Ray;
 use crate::rng::{Purpose, Rng};
 
 fn rng(index: u64) -> Rng {
@@ -26,6 +27,23 @@ fn direction(rng: &mut Rng) -> DVec3 {
 
 fn in_cube(rng: &mut Rng) -> DVec3 {
     DVec3::new(rng.f64(), rng.f64(), rng.f64()) * 2.0 - 1.0
+}
+
+/// The nearest hit, which must be the same with and without a choice of hits.
+fn nearest(geometry: &Geometry, ray: &Ray) -> Option<Hit> {
+    let met = geometry.nearest(ray);
+    assert_eq!(met, geometry.intersect(ray, |_| true));
+    met.map(|met| {
+        assert_eq!(met.vertices, geometry.vertices(met.hit.instance, met.hit.triangle));
+        met.hit
+    })
+}
+
+/// Whether there is a hit, which must be the same with and without a choice of hits.
+fn blocked(geometry: &Geometry, ray: &Ray) -> bool {
+    let found = geometry.blocked(ray);
+    assert_eq!(found, geometry.occluded(ray, |_| true));
+    found
 }
 
 /// A closed mesh around the origin: an octahedron whose faces are split `levels` times and pushed to `radius`.

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-use super::{Geometry, MeshGeometry, direction, lumpy, placed, rng, soup};
+use super::{Geometry, MeshGeometry, blocked, direction, lumpy, placed, rng, soup};
 use crate::bvh::{Anchor, offset_origin, segment};
 use crate::ray::Ray;
 use crate::rng::Rng;
@@ -132,9 +132,9 @@ fn segments_see_what_stands_between() {
     let geometry = placed(walls(1e-4), DAffine3::IDENTITY, false);
     let below = Anchor { position: DVec3::new(0.1, 0.2, 0.0), normal: DVec3::Z, rounding: 1e-6 };
     let above = Anchor { position: DVec3::new(0.1, 0.2, 3e-4), normal: DVec3::ZERO, rounding: 0.0 };
-    assert!(geometry.occluded(&segment(&below, &above), |_| true));
-    assert!(geometry.occluded(&segment(&above, &below), |_| true));
+    assert!(blocked(&geometry, &segment(&below, &above)));
+    assert!(blocked(&geometry, &segment(&above, &below)));
     let wall = Anchor { position: DVec3::new(-0.3, 0.2, 1e-4), normal: -DVec3::Z, rounding: 1e-6 };
-    assert!(!geometry.occluded(&segment(&below, &wall), |_| true));
+    assert!(!blocked(&geometry, &segment(&below, &wall)));
     assert_eq!(segment(&below, &below).t_max, 0.0);
 }

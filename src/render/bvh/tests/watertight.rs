@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::{closed, cube, direction, icosphere, in_cube, lumpy, placed, rng};
+use super::{blocked, closed, cube, direction, icosphere, in_cube, lumpy, nearest, placed, rng};
 use crate::bvh::{Geometry, MeshGeometry};
 use crate::ray::Ray;
 
@@ -21,8 +21,8 @@ fn escapes(geometry: &Geometry, mesh: &MeshGeometry, to_world: DAffine3, rays: u
             _ => a.midpoint(b) - origin,
         };
         let ray = Ray::new(origin, along.normalize());
-        escaped += usize::from(geometry.intersect(&ray, |_| true).is_none());
-        escaped += usize::from(!geometry.occluded(&ray, |_| true));
+        escaped += usize::from(nearest(&geometry, &ray).is_none());
+        escaped += usize::from(!blocked(&geometry, &ray));
     }
     escaped
 }

@@ -8,7 +8,7 @@ use std::{fs, path::Path};
 
 use tempfile::TempDir;
 
-use super::{SceneFile, load};
+use super::{Overrides, SceneFile, load};
 use crate::{Diagnostic, ImportRequest, Imported, Light, LightKind, Material, Mesh, Node, Scene, Texture};
 
 /// A folder with this `scene.toml` and empty files of these names.
@@ -55,7 +55,7 @@ fn import(request: &ImportRequest) -> Result<Imported, Diagnostic> {
 }
 
 fn read(folder: &Path) -> Result<SceneFile, Vec<Diagnostic>> {
-    load(&folder.join("scene.toml"), &import)
+    load(&folder.join("scene.toml"), &Overrides::default(), &import)
 }
 
 /// The scene file of this text, which must be right.

@@ -233,6 +233,22 @@ fn in_range_is_valid() {
 }
 
 #[test]
+fn a_missing_uv_set_is_said_once_a_mesh_and_material() {
+    let mut scene = sample();
+    scene.textures[Id::new(0)].uv_set = 1;
+    // Placed again: nothing new to say.
+    let again = scene.nodes[NODE].clone();
+    let again = scene.nodes.push(again);
+    scene.roots.push(again);
+    let said: Vec<_> = scene.validate().iter().map(ToString::to_string).collect();
+    let warning = "warning: node \"Lamp\"/mesh \"Bulb\": material \"Chrome\" has a texture on UV set 1, which the \
+                   mesh lacks; its colour at (0, 0) is used";
+    assert_eq!(said, [warning]);
+    scene.meshes[MESH].uvs.push(vec![Vec2::ONE; 3]);
+    assert_eq!(scene.validate(), []);
+}
+
+#[test]
 fn repetition_is_counted() {
     let mut scene = sample();
     for _ in 0..10 {

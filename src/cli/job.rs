@@ -1,0 +1,137 @@
+//! What to render and where to write it: the command line over the scene file over the defaults.
+
+use ajar_integrators::{Integrator, Settings, Window, integrators, stop::StopRules};
+use ajar_output::ToneMap;
+use ajar_scene::{Cause, Diagnostic, OutputSettings, RenderSettings};
+
+use super::render::Args;
+use crate::{
+    image::{Aov, Destination},
+    session::{self, DEFAULT_SIZE, Loaded},
+};
+
+/// Samples a pixel where no stop rule is given.
+const DEFAULT_SPP: u32 = 64;
+/// Edges of the longest path where nothing says another.
+const DEFAULT_DEPTH: u32 = 16;
+/// Fewest rounds that `--spp` is spread over, where it is enough for them: their spread is the noise estimate. Points are
+/// evenly spread within a round only, so more rounds would mean more noise.
+const ROUNDS_OF_SPP: u32 = 8;
+/// Eye samples a pixel in a round when only time, noise or rounds limit the render.
+const SAMPLES_PER_ROUND: u32 = 16;
+
+/// What the command line and the file together ask for.
+pub(super) struct Job {
+    pub integrator: &'static dyn Integrator,
+    /// Full frame, pixels.
+    pub size: [u32; 2],
+    pub settings: Settings,
+    pub rules: StopRules,
+    pub destination: Destination,
+}
+
+impl Job {
+    /// Puts together what is asked for.
+    ///
+    /// # Errors
+    /// It cannot be done; of the cause [`Cause::Usage`].
+    pub fn new(args: &Args, loaded: &Loaded) -> Result<Self, Diagnostic> {
+        let (render, output) = (&loaded.file.render, &loaded.file.output);
+        let name = args.integrator.as_deref().or(render.integrator.as_deref()).unwrap_or("path");
+        let integrator = find_integrator(name)?;
+        let size = args.size.or(render.size).unwrap_or(DEFAULT_SIZE);
+        let max_depth = args.max_depth.or(render.max_depth).unwrap_or(DEFAULT_DEPTH) as usize;
+        if max_depth > integrator.max_depth() {
+            let most = integrator.max_depth();
+            return Err(wrong(format!("max_depth {max_depth} is more than {name} can build, {most}")));
+        }
+        let (rules, samples_per_round) = stop_rules(args, render);
+        let seed = args.seed.or(render.seed).unwrap_or(0);
+        let window = window(args, render, size)?;
+        let settings = Settings { seed, max_depth, samples_per_round, window };
+        Ok(Self { integrator, size, settings, rules, destination: destination(args, output)? })
+    }
+
+    /// What `--dry-run` says.
+    pub fn describe(&self) -> String {
+        let Window { x0, y0, x1, y1 } = self.settings.window;
+        format!(
+            "would render {}x{} pixels of {}x{} by {} to {}",
+            x1 - x0,
+            y1 - y0,
+            self.size[0],
+            self.size[1],
+            self.integrator.name(),
+            self.destination.exr.display()
+        )
+    }
+}
+
+fn wrong(message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(message).because(Cause::Usage)
+}
+
+fn find_integrator(name: &str) -> Result<&'static dyn Integrator, Diagnostic> {
+    integrators().iter().copied().find(|i| i.name() == name).ok_or_else(|| {
+        let known: Vec<_> = integrators().iter().map(|i| i.name()).collect();
+        wrong(format!("there is no integrator \"{name}\""))
+            .hint(format!("choose one of: {}", known.join(", ")))
+    })
+}
+
+/// Stop rules given on the command line replace all those of the file.
+fn stop_rules(args: &Args, render: &RenderSettings) -> (StopRules, u32) {
+    let given = args.spp.is_some() || args.rounds.is_some() || args.time.is_some() || args.noise.is_some();
+    let (mut spp, rounds, time, noise) = if given {
+        (args.spp, args.rounds, args.time, args.noise)
+    } else {
+        (render.spp, render.rounds, render.time, render.noise)
+    };
+    if spp.is_none() && rounds.is_none() && time.is_none() && noise.is_none() {
+        spp = Some(DEFAULT_SPP);
+    }
+    let samples = spp.map_or(SAMPLES_PER_ROUND, |n| floor_power_of_two(n / ROUNDS_OF_SPP).min(256));
+    let by_spp = spp.map(|n| u64::from(n.div_ceil(samples)));
+    let rounds = [rounds, by_spp].into_iter().flatten().min();
+    (StopRules { rounds, time, noise }, samples)
+}
+
+fn floor_power_of_two(n: u32) -> u32 {
+    if n == 0 { 1 } else { 1 << n.ilog2() }
+}
+
+fn window(args: &Args, render: &RenderSettings, [w, h]: [u32; 2]) -> Result<Window, Diagnostic> {
+    let window = match (args.pixel_bounds, args.crop.or(render.crop)) {
+        (Some([x0, x1, y0, y1]), _) => Window { x0, y0, x1: x1.min(w), y1: y1.min(h) },
+        (None, Some([x0, x1, y0, y1])) => {
+            let at = |fraction: f64, n: u32| (fraction * f64::from(n)).round() as u32;
+            Window { x0: at(x0, w), y0: at(y0, h), x1: at(x1, w).min(w), y1: at(y1, h).min(h) }
+        }
+        (None, None) => Window { x0: 0, y0: 0, x1: w, y1: h },
+    };
+    if window.x0 < window.x1 && window.y0 < window.y1 {
+        Ok(window)
+    } else {
+        Err(wrong("the part to render holds no pixel"))
+    }
+}
+
+fn destination(args: &Args, output: &OutputSettings) -> Result<Destination, Diagnostic> {
+    let merged = OutputSettings {
+        path: args.output.clone().or_else(|| output.path.clone()),
+        // A new name on the command line takes its preview along.
+        png: if args.output.is_some() { None } else { output.png.clone() },
+        ..output.clone()
+    };
+    let (exr, png) = session::output_paths(&args.input.file, &merged);
+    let tone_map = args.tone_map.as_deref().or(output.tone_map.as_deref()).unwrap_or("agx");
+    let names = args.aov.clone().or_else(|| output.aov.clone()).unwrap_or_default();
+    Ok(Destination {
+        exr,
+        png,
+        tone_map: tone_map.parse::<ToneMap>().map_err(|e| wrong(e.to_string()))?,
+        exposure: args.exposure.or(output.exposure).unwrap_or(0.0),
+        aovs: names.iter().map(|name| Aov::parse(name)).collect::<Result<_, _>>()?,
+        float: args.float || output.float.unwrap_or(false),
+    })
+}

@@ -1,0 +1,235 @@
+//! The base of the `ajar` estimator: path tracing that leaves to Metropolis chains what it is bad at (after Gruson et
+//! al. 2019, "Selectively Metropolised Monte Carlo light transport simulation"; mlt.md §5.4 of the design).
+//!
+//! C = f*/p is what the path tracer makes of a path that it finds with density p. With μ the brightness of the path's
+//! pixel, the share w_B = κμ/(κμ + C) of f belongs to the base, which so never adds more than κμ, and the rest to the
+//! chains. Both compute the same C, so the shares add up to 1.
+
+use ajar_render::{
+    math::{Rgb, scalar},
+    path::{ROULETTE_DEPTH, Vertex},
+    sampler::Sequence,
+};
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::{
+    path::{Node, Path, Space},
+    target::{Aim, Target},
+};
+use crate::{
+    Settings,
+    path::{Found, Visitor, walk},
+};
+
+/// κ: how many times a pixel's brightness one path may add to it.
+const CLAMP: f64 = 2.0;
+
+/// Which part of each path belongs to whom.
+#[derive(Clone, Copy, Debug)]
+pub struct Split<'a> {
+    /// Where paths live.
+    pub space: Space<'a>,
+    /// Brightness of each pixel of the window, nowhere 0.
+    pub brightness: &'a [f64],
+}
+
+impl Split<'_> {
+    /// w_R: the share that belongs to the chains.
+    pub fn residual(contribution: f64, brightness: f64) -> f64 {
+        if contribution.is_infinite() { 1.0 } else { contribution / (CLAMP * brightness + contribution) }
+    }
+}
+
+impl Target for Split<'_> {
+    fn aim(&self, x: &Path) -> Aim {
+        let brightness = self.space.pixel(x.raster).map_or(1.0, |pixel| self.brightness[pixel]);
+        let share = Self::residual(contribution(x), brightness);
+        Aim { weight: share / brightness, deposit: x.f * (brightness / x.scalar()) }
+    }
+}
+
+/// C of a path of two edges or more, infinite where the path tracer never finds it.
+pub fn contribution(x: &Path) -> f64 {
+    let k = x.edges();
+    let (mut density, mut walk_albedo) = (1.0, 1.0);
+    // Probability to survive roulette at x_i, as the walk of the path tracer has it.
+    let mut survival = |i: usize| {
+        let (edges, albedo) = (k - i, x.nodes[i].albedo);
+        if edges <= ROULETTE_DEPTH {
+            walk_albedo *= albedo;
+        }
+        match edges {
+            0 => 1.0,
+            ROULETTE_DEPTH => f64::clamp(walk_albedo, 0.05, 0.95),
+            _ if edges < ROULETTE_DEPTH => 1.0,
+            _ => albedo.clamp(0.05, 0.95),
+        }
+    };
+    for i in (2..=k).rev() {
+        density *= x.nodes[i].to_light * if i < k { survival(i) } else { 1.0 };
+    }
+    let mut both = 0.0;
+    if x.connectable(1) {
+        both += density * x.light / x.nodes[0].passed;
+    }
+    if x.nodes[0].vertex.can_be_met() {
+        both += density * x.nodes[1].to_light * survival(1);
+    }
+    x.scalar() / both
+}
+
+/// Adds the base of a round to the film. Returns what each pixel leaves to the chains: the sum over its samples of
+/// C·w_R/μ.
+pub fn render(
+    split: &Split<'_>,
+    settings: &Settings,
+    round: u32,
+    add: impl Fn(usize, Rgb) + Sync,
+) -> Vec<f64> {
+    let window = split.space.window;
+    let samples = 1.0 / f64::from(settings.samples_per_round);
+    (0..window.pixels())
+        .into_par_iter()
+        .with_min_len(window.width() as usize)
+        .map(|pixel| {
+            let mut shares = Shares { brightness: split.brightness[pixel], sum: Rgb::ZERO, residual: 0.0 };
+            for sample in settings.samples(round) {
+                trace(&split.space, settings.seed, pixel, sample, &mut shares);
+            }
+            add(pixel, shares.sum * samples);
+            shares.residual
+        })
+        .collect()
+}
+
+/// Mean brightness of the samples of each pixel, without light seen directly.
+pub fn means(space: &Space<'_>, settings: &Settings, round: u32) -> Vec<f64> {
+    struct Indirect(f64);
+    impl Visitor for Indirect {
+        fn found(&mut self, path: &Found<'_>) {
+            if path.edges > 1 {
+                self.0 += scalar(path.value);
+            }
+        }
+    }
+    (0..space.window.pixels())
+        .into_par_iter()
+        .map(|pixel| {
+            let mut sum = Indirect(0.0);
+            for sample in settings.samples(round) {
+                trace(space, settings.seed, pixel, sample, &mut sum);
+            }
+            sum.0 / f64::from(settings.samples_per_round)
+        })
+        .collect()
+}
+
+/// Runs one sample of a pixel. Returns raster position and lens point.
+fn trace(
+    space: &Space<'_>,
+    seed: u64,
+    pixel: usize,
+    sample: u64,
+    visitor: &mut impl Visitor,
+) -> (DVec2, [f64; 2]) {
+    let window = space.window;
+    let width = window.width() as usize;
+    let (x, y) = (window.x0 + (pixel % width) as u32, window.y0 + (pixel / width) as u32);
+    let number = u64::from(y) * u64::from(space.world.camera.width) + u64::from(x);
+    let mut sampler = Sequence::new(seed, 0, number).sample(sample);
+    let [dx, dy] = sampler.next_2d();
+    let raster = DVec2::new(f64::from(x) + dx, f64::from(y) + dy);
+    (raster, walk(space.world, space.max_depth, raster, &mut sampler, visitor))
+}
+
+/// Vertices of the first walk of a pixel, the lens included.
+pub fn vertices(space: &Space<'_>, seed: u64, pixel: usize) -> usize {
+    struct Count(usize);
+    impl Visitor for Count {
+        fn leave(&mut self, _: &Vertex) {
+            self.0 += 1;
+        }
+        fn found(&mut self, _: &Found<'_>) {}
+    }
+    let mut count = Count(0);
+    trace(space, seed, pixel, 0, &mut count);
+    count.0
+}
+
+/// Divides what a pixel's samples find.
+struct Shares {
+    brightness: f64,
+    sum: Rgb,
+    residual: f64,
+}
+
+impl Shares {
+    /// What a path leaves to the chains: C·w_R/μ. Light seen directly is the base's alone.
+    fn left(&self, path: &Found<'_>) -> f64 {
+        let c = scalar(path.value);
+        if path.edges == 1 { 0.0 } else { c * Split::residual(c, self.brightness) / self.brightness }
+    }
+}
+
+impl Visitor for Shares {
+    fn found(&mut self, path: &Found<'_>) {
+        let left = self.left(path);
+        // w_R = left·μ/C, so that what stays is (C − left·μ)/C of the value.
+        let c = scalar(path.value);
+        self.sum += path.value * (1.0 - left * self.brightness / c);
+        self.residual += left;
+    }
+}
+
+/// Finds the path of a pixel at which the sum of what is left to the chains exceeds `rest`, and builds it into `path`;
+/// `None` if rounding lost it.
+pub fn replay(
+    split: &Split<'_>,
+    settings: &Settings,
+    round: u32,
+    (pixel, rest): (usize, f64),
+    path: &mut Path,
+) -> Option<()> {
+    let shares = Shares { brightness: split.brightness[pixel], sum: Rgb::ZERO, residual: 0.0 };
+    let mut search = Search { shares, rest, walked: Vec::new(), path, connection: None, found: false };
+    for sample in settings.samples(round) {
+        search.walked.clear();
+        let (raster, lens) = trace(&split.space, settings.seed, pixel, sample, &mut search);
+        if search.found {
+            (search.path.raster, search.path.lens) = (raster, lens);
+            let edges = search.path.edges();
+            return search.path.measure(&split.space, (0, edges), search.connection).ok();
+        }
+    }
+    None
+}
+
+struct Search<'a> {
+    shares: Shares,
+    rest: f64,
+    walked: Vec<Vertex>,
+    path: &'a mut Path,
+    connection: Option<usize>,
+    found: bool,
+}
+
+impl Visitor for Search<'_> {
+    fn leave(&mut self, vertex: &Vertex) {
+        self.walked.push(*vertex);
+    }
+
+    fn found(&mut self, path: &Found<'_>) {
+        if self.found {
+            return;
+        }
+        self.shares.found(path);
+        if self.shares.residual > self.rest {
+            self.found = true;
+            self.connection = path.seen_from.map(|_| 0);
+            let ends = std::iter::once(path.x0).chain(path.seen_from);
+            self.path.nodes.clear();
+            self.path.nodes.extend(ends.chain(self.walked.iter().rev()).map(|vertex| Node::new(*vertex)));
+        }
+    }
+}

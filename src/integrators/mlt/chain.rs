@@ -1,0 +1,130 @@
+//! A Markov chain over paths (Veach & Guibas 1997 §3; mlt.md §3.2 of the design).
+
+use ajar_render::{math::Rgb, rng::Rng};
+
+use super::{
+    Aux, Mutation, Reject,
+    choice::{Selection, Table},
+    path::{Path, Space},
+    proposal::Proposal,
+    stats::ChainStats,
+    target::{Aim, Target},
+};
+
+/// What all chains of a round share.
+#[derive(Clone, Copy)]
+pub struct Kernel<'a> {
+    /// Where paths live.
+    pub space: Space<'a>,
+    /// The mutations, in the order of the table.
+    pub mutations: &'a [&'a dyn Mutation],
+    /// Their weights.
+    pub table: &'a Table,
+    /// The density to visit.
+    pub target: &'a dyn Target,
+}
+
+/// A chain.
+pub struct Chain<'a> {
+    kernel: Kernel<'a>,
+    rng: Rng,
+    x: Path,
+    aim: Aim,
+    selection: Selection,
+    y: Proposal,
+    /// Steps that x has stood for and not yet deposited.
+    pending: f64,
+    /// What happened.
+    pub stats: ChainStats,
+}
+
+impl<'a> Chain<'a> {
+    /// A chain with nothing in it yet, but all the memory that it will need.
+    pub fn new(kernel: Kernel<'a>, rng: Rng) -> Self {
+        Self {
+            kernel,
+            rng,
+            x: Path::with_capacity(),
+            aim: Aim { weight: 1.0, deposit: Rgb::ZERO },
+            selection: Selection::NONE,
+            y: Proposal::default(),
+            pending: 0.0,
+            stats: ChainStats::default(),
+        }
+    }
+
+    /// Begins again at `seed`, whose f* is not 0, with the random numbers of `rng`.
+    pub fn start(&mut self, seed: &Path, rng: Rng) {
+        self.rng = rng;
+        self.x.copy_from(seed);
+        self.aim = self.kernel.target.aim(seed);
+        self.selection = self.selection_at(seed);
+        self.pending = 0.0;
+    }
+
+    /// Where the chain is.
+    pub fn path(&self) -> &Path {
+        &self.x
+    }
+
+    fn selection_at(&self, x: &Path) -> Selection {
+        Selection::at(x, self.kernel.mutations, self.kernel.table)
+    }
+
+    /// Makes `steps` steps. `record` takes the paths of expected-value recording (Veach & Guibas 1997 §3.1): what they
+    /// aim at, and the number of steps that they stand for, `steps` in all.
+    pub fn run(&mut self, steps: u32, mut record: impl FnMut(&Path, &Aim, f64)) {
+        for _ in 0..steps {
+            self.step(&mut record);
+        }
+        record(&self.x, &self.aim, self.pending);
+        self.pending = 0.0;
+        self.stats.rays += std::mem::take(&mut self.y.rays);
+    }
+
+    /// One step.
+    fn step(&mut self, record: &mut impl FnMut(&Path, &Aim, f64)) {
+        let Some(m) = self.selection.choose(&mut self.rng) else {
+            self.pending += 1.0;
+            return;
+        };
+        let mutation = self.kernel.mutations[m];
+        let aux = match mutation.propose(&self.kernel.space, &self.x, &mut self.y, &mut self.rng) {
+            Ok(aux) => aux,
+            Err(reject) => {
+                self.stats.fail(m, reject);
+                self.pending += 1.0;
+                return;
+            }
+        };
+        let aim = self.kernel.target.aim(&self.y.path);
+        let selection = self.selection_at(&self.y.path);
+        let acceptance = self.acceptance(m, &aux, &aim, &selection);
+        let accepted = self.rng.f64() < acceptance;
+        self.stats.count(m, acceptance, accepted);
+        if accepted {
+            record(&self.x, &self.aim, self.pending + 1.0 - acceptance);
+            std::mem::swap(&mut self.x, &mut self.y.path);
+            (self.aim, self.selection, self.pending) = (aim, selection, acceptance);
+        } else {
+            if acceptance > 0.0 {
+                record(&self.y.path, &aim, acceptance);
+            }
+            self.pending += 1.0 - acceptance;
+        }
+    }
+
+    /// Metropolis–Hastings: min(1, π(y) T(x|y) / π(x) T(y|x)), the choice of the mutation included.
+    fn acceptance(&mut self, m: usize, aux: &Aux, aim: &Aim, selection: &Selection) -> f64 {
+        let (space, mutation) = (&self.kernel.space, self.kernel.mutations[m]);
+        let forth = mutation.log_q(space, &self.x, &self.y.path, aux);
+        let back = mutation.log_q(space, &self.y.path, &self.x, &aux.reverse());
+        let chosen = selection.probability(m) / self.selection.probability(m);
+        let ratio = (back - forth).exp() * chosen * aim.weight / self.aim.weight;
+        if ratio.is_nan() {
+            self.stats.fail(m, Reject::NotFinite);
+            return 0.0;
+        }
+        ratio.min(1.0)
+    }
+}

@@ -1,0 +1,22 @@
+//! Metropolis light transport (Veach & Guibas 1997), seeded by bidirectional path tracing without start-up bias.
+
+mod base;
+pub mod chain;
+pub mod chains;
+pub mod choice;
+mod direct;
+mod estimator;
+pub mod mutation;
+pub mod mutations;
+pub mod path;
+mod perturb;
+mod pilot;
+pub mod plain;
+pub mod proposal;
+pub mod seeds;
+pub mod stats;
+pub mod target;
+
+pub use estimator::Ajar;
+pub use mutation::{Aux, Mutation, Reject};
+pub use plain::Mlt;

@@ -1,0 +1,128 @@
+//! "Getting it right" (Geweke 2004; mlt.md §8 V5): chains that start from exact samples of the target must not leave it.
+//!
+//! Each seed is compared with what its own chain becomes, so that the noise of the seeds cancels.
+
+use ajar_integrators::{
+    Settings,
+    mlt::{
+        Mutation,
+        chain::{Chain, Kernel},
+        choice::{CLASSES, Table, class},
+        path::{Path, Space},
+        seeds::{Bootstrap, resample},
+        target::Plain,
+    },
+};
+use ajar_render::{
+    World,
+    rng::{Purpose, Rng},
+};
+use rayon::prelude::*;
+
+const TILES: usize = 4;
+const LENGTHS: usize = 8;
+const COUNT: usize = TILES * TILES * LENGTHS + CLASSES + TILES * TILES + LENGTHS + 6;
+
+/// Indices of the test functions that are 1 at a path.
+fn features(path: &Path, world: &World) -> [usize; 6] {
+    let tile = |x: f64, n: u32| ((x / f64::from(n) * TILES as f64) as usize).min(TILES - 1);
+    let tile = tile(path.raster.y, world.camera.height) * TILES + tile(path.raster.x, world.camera.width);
+    let length = path.edges().min(LENGTHS - 1);
+    let red = ((path.f.x / (3.0 * path.scalar()) * 3.0) as usize).min(2);
+    let far = path.nodes[path.edges() - 1].edge.length;
+    let depth = if far < 3.5 {
+        0
+    } else if far < 4.3 {
+        1
+    } else {
+        2
+    };
+    let (a, b, c) = (TILES * TILES * LENGTHS, CLASSES, TILES * TILES);
+    [
+        tile * LENGTHS + length,
+        a + class(path),
+        a + b + tile,
+        a + b + c + length,
+        a + b + c + LENGTHS + red,
+        a + b + c + LENGTHS + 3 + depth,
+    ]
+}
+
+/// How far a kernel moves the distribution: the largest |z|, and χ² per degree of freedom, over test functions that have
+/// at least 1 % of the energy.
+#[derive(Clone, Copy, Debug)]
+pub struct Drift {
+    pub largest_z: f64,
+    pub chi2: f64,
+    pub acceptance: f64,
+}
+
+impl Drift {
+    pub fn is_none(&self) -> bool {
+        self.largest_z < 4.5 && self.chi2 < 1.8
+    }
+}
+
+/// Runs `mutations` with equal chances for `steps` steps from each of `seeds` seeds.
+pub fn drift(
+    world: &World,
+    settings: &Settings,
+    mutations: &[&dyn Mutation],
+    steps: u32,
+    seeds: usize,
+) -> Drift {
+    let space = Space::new(world, settings.window, settings.max_depth);
+    let bootstrap = Bootstrap { space, seed: settings.seed, round: steps, samples: seeds as u32 };
+    let mut candidates = bootstrap.candidates();
+    let chosen = resample(&mut candidates, seeds, &mut Rng::new(settings.seed, Purpose::Test, 0, 1));
+    let table = Table::uniform(&vec![1.0; mutations.len()]);
+    let kernel = Kernel { space, mutations, table: &table, target: &Plain };
+    let stream = |i: usize| Rng::new(settings.seed, Purpose::Chain, steps, i as u64);
+    let blocks: Vec<_> = chosen
+        .par_chunks(seeds.div_ceil(64))
+        .enumerate()
+        .map(|(block, chosen)| {
+            let (mut tracer, mut path) = (bootstrap.tracer(), Path::with_capacity());
+            let mut chain = Chain::new(kernel, stream(0));
+            let mut sums = [[0.0; 3]; COUNT];
+            for (i, &seed) in chosen.iter().enumerate() {
+                if bootstrap.replay(&candidates[seed as usize], &mut tracer, &mut path).is_none() {
+                    continue;
+                }
+                chain.start(&path, stream(block << 32 | i));
+                let mut change = Vec::<(usize, f64)>::new();
+                for q in features(&path, world) {
+                    change.push((q, -1.0));
+                    sums[q][2] += 1.0;
+                }
+                chain.run(steps, |path, _, weight| {
+                    change.extend(features(path, world).map(|q| (q, weight / f64::from(steps))));
+                });
+                change.sort_by_key(|c| c.0);
+                for run in change.chunk_by(|a, b| a.0 == b.0) {
+                    let d: f64 = run.iter().map(|c| c.1).sum();
+                    sums[run[0].0][0] += d;
+                    sums[run[0].0][1] += d * d;
+                }
+            }
+            (sums, chain.stats)
+        })
+        .collect();
+    let n = seeds as f64;
+    let (mut largest_z, mut chi2, mut count) = (0f64, 0.0, 0.0);
+    for q in 0..COUNT {
+        let [sum, squares, share] =
+            std::array::from_fn(|j| blocks.iter().map(|(sums, _)| sums[q][j]).sum::<f64>());
+        let variance = squares / n - (sum / n).powi(2);
+        if share < 0.01 * n || variance < 1e-9 {
+            continue;
+        }
+        let z = sum / n / (variance / n).sqrt();
+        largest_z = largest_z.max(z.abs());
+        chi2 += z * z;
+        count += 1.0;
+    }
+    let tried: u64 = blocks.iter().map(|(_, s)| s.steps()).sum();
+    let accepted: f64 = blocks.iter().flat_map(|(_, s)| s.mutations.iter().map(|m| m.acceptance)).sum();
+    Drift { largest_z, chi2: chi2 / f64::max(count, 1.0), acceptance: accepted / tried.max(1) as f64 }
+}

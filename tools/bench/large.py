@@ -1,0 +1,101 @@
+"""Time and memory that a large asset takes until its first pixels are there.
+
+    cargo build --release
+    pip install numpy
+    python tools/bench/large.py target/release/ajar
+
+writes a GLB of five million triangles (a rough sheet with normals) and renders it at one sample a pixel: reading,
+building the hierarchy, one round, writing. `--triangles` takes another size, `--threads` another number of threads.
+"""
+
+import argparse
+import json
+import os
+import struct
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+
+def sheet(triangles):
+    """Positions, normals and triangles of a square sheet."""
+    n = int(np.sqrt(triangles / 2)) + 1
+    y, x = np.mgrid[0:n, 0:n].astype(np.float32) / (n - 1)
+    rough = 0.01 * np.random.default_rng(0).random((n, n))
+    height = 0.05 * np.sin(x * 40) * np.cos(y * 33) + rough
+    positions = np.stack([x * 4 - 2, height, y * 4 - 2], -1).reshape(-1, 3).astype("<f4")
+    normals = np.tile(np.array([0, 1, 0], "<f4"), (n * n, 1))
+    i = np.arange(n * n, dtype="<u4").reshape(n, n)
+    a, b, c, d = i[:-1, :-1], i[:-1, 1:], i[1:, :-1], i[1:, 1:]
+    upper, lower = np.stack([a, c, b], -1), np.stack([b, c, d], -1)
+    return positions, normals, np.concatenate([upper.reshape(-1, 3), lower.reshape(-1, 3)])
+
+
+def write_glb(path, positions, normals, triangles):
+    arrays = [positions, normals, triangles]
+    starts = np.cumsum([0] + [array.nbytes for array in arrays]).tolist()
+    view = [{"buffer": 0, "byteOffset": start, "byteLength": array.nbytes} for start, array in zip(starts, arrays)]
+    vector = {"componentType": 5126, "count": len(positions), "type": "VEC3"}
+    limits = {"min": positions.min(0).tolist(), "max": positions.max(0).tolist()}
+    document = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2}]}],
+        "accessors": [
+            {"bufferView": 0, **vector, **limits},
+            {"bufferView": 1, **vector},
+            {"bufferView": 2, "componentType": 5125, "count": triangles.size, "type": "SCALAR"},
+        ],
+        "bufferViews": view,
+        "buffers": [{"byteLength": starts[-1]}],
+    }
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    with open(path, "wb") as file:
+        file.write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + starts[-1]))
+        file.write(struct.pack("<I4s", len(text), b"JSON") + text)
+        file.write(struct.pack("<I4s", starts[-1], b"BIN\0"))
+        for array in arrays:
+            file.write(array.tobytes())
+
+
+def measure(command):
+    """Seconds on the clock, seconds of processors, and the peak of memory in bytes."""
+    start = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    seconds = time.perf_counter() - start
+    if status != 0:
+        raise SystemExit(f"{' '.join(command)} failed with status {status}")
+    return seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("ajar")
+    parser.add_argument("--triangles", type=int, default=5_000_000)
+    parser.add_argument("--threads", type=int, default=2)
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "large.glb"
+        positions, normals, triangles = sheet(arguments.triangles)
+        write_glb(path, positions, normals, triangles)
+        print(f"{len(triangles)} triangles, {path.stat().st_size / 2**20:.0f} MiB")
+        program = str(Path(arguments.ajar).resolve())
+        image = ["render", str(path), "--threads", str(arguments.threads), "-o", str(Path(folder) / "large.exr")]
+        for name, command in [
+            ("reading alone", ["inspect", str(path)]),
+            ("reading and building", [*image, "--dry-run"]),
+            ("first pixels, 1280x720", [*image, "--spp", "1"]),
+        ]:
+            clock, processor, memory = measure([program, *command])
+            print(f"{name:24} {clock:6.2f} s, {processor:6.2f} s of processors, {memory / 2**30:.2f} GiB")
+
+
+if __name__ == "__main__":
+    main()
