@@ -118,7 +118,9 @@ def test_github_sees_an_annotation_at_the_case(project: pytest.Pytester, monkeyp
     write_scene(project.path, "door", seed=2, scale=1.05)
     monkeypatch.setenv("GITHUB_ACTIONS", "true")
     output = run(project).stdout.str()
-    assert re.search(r"^::error file=tests/images/door/scene\.toml,title=image differs::DIFFERENT", output, re.MULTILINE)
+    assert re.search(
+        r"^::error file=tests/images/door/scene\.toml,title=image differs::DIFFERENT", output, re.MULTILINE
+    )
 
 
 def test_a_renderer_that_fails_is_quoted(project: pytest.Pytester) -> None:
