@@ -1,6 +1,7 @@
 //! The command line: one file a command. Exit codes as in [`Exit`].
 
 mod arguments;
+mod diff;
 mod exit;
 mod formats;
 mod input;
@@ -44,6 +45,8 @@ enum Command {
     Validate(validate::Args),
     /// List the file formats that can be read, and what of each is supported
     Formats(formats::Args),
+    /// Compare an image with a reference, aware of noise
+    Diff(diff::Args),
 }
 
 /// Runs the program on its arguments.
@@ -61,6 +64,7 @@ pub fn run() -> ExitCode {
         Command::Inspect(args) => inspect::run(&args, cli.log_format),
         Command::Validate(args) => validate::run(&args, cli.log_format),
         Command::Formats(args) => formats::run(&args),
+        Command::Diff(args) => diff::run(&args),
     };
     exit.into()
 }

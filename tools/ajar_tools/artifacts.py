@@ -17,8 +17,9 @@ PAGE = """<!doctype html><meta charset="utf-8"><meta name="viewport" content="wi
 <title>Ajar: {title}</title>
 <style>
 body {{ font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 60rem; padding: 0 1rem; color: #222 }}
-table {{ border-collapse: collapse; width: 100% }} td, th {{ padding: .4rem .6rem; text-align: left; vertical-align: top;
-border-bottom: 1px solid #ddd }} .pass {{ color: #176b2c }} .fail, .cannot {{ color: #b3261e; font-weight: 600 }}
+table {{ border-collapse: collapse; width: 100% }}
+td, th {{ padding: .4rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd }}
+.pass {{ color: #176b2c }} .fail, .cannot {{ color: #b3261e; font-weight: 600 }}
 </style>
 <h1>{title}</h1><p>{lead}</p>
 <table><tr><th>case<th>result<th>what was found</tr>{rows}</table>

@@ -1,7 +1,7 @@
 """A case: a folder with a scene, the reference image of it, and perhaps a `compare.toml`.
 
 `compare.toml` holds limits (`ajar_tools.settings`) and, under `[render]`, how the image is made: `scene` (by default
-scene.toml) and `arguments` for Ajar, or a whole `command` for another renderer with the places `{scene}` and `{output}`.
+scene.toml) and `arguments` for Ajar, or a whole `command` for another renderer, with places `{scene}` and `{output}`.
 """
 
 from __future__ import annotations

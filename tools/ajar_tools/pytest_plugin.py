@@ -1,8 +1,8 @@
 """The pytest plug-in: every folder in tests/images that holds a scene is a test.
 
 `pytest` renders each case and compares it with its reference; `pytest --ajar-update` makes references anew and a page
-to review them. Cases can run in parallel (`pytest -n 4`): each writes only into its own folder of artifacts. The fixtures
-`ajar_render` and `ajar_compare` do the same for tests written in Python.
+to review them. Cases can run in parallel (`pytest -n 4`): each writes only into its own folder of artifacts. The
+fixtures `ajar_render` and `ajar_compare` do the same for tests written in Python.
 """
 
 from __future__ import annotations

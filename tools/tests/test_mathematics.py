@@ -13,7 +13,14 @@ flip_evaluator = pytest.importorskip("flip_evaluator")
 @pytest.mark.parametrize(
     ("t", "freedom", "critical"),
     # Table of Student's t, Abramowitz & Stegun 26.10.
-    [(12.706, 1, 0.05), (4.032, 5, 0.01), (2.845, 20, 0.01), (3.850, 20, 0.001), (3.460, 60, 0.001), (1.980, 120, 0.05)],
+    [
+        (12.706, 1, 0.05),
+        (4.032, 5, 0.01),
+        (2.845, 20, 0.01),
+        (3.850, 20, 0.001),
+        (3.460, 60, 0.001),
+        (1.980, 120, 0.05),
+    ],
 )
 def test_students_t_has_the_tabulated_values(t: float, freedom: int, critical: float) -> None:
     assert two_sided_t(np.array([t]), np.array([freedom]))[0] == pytest.approx(critical, rel=2e-3)
@@ -25,7 +32,9 @@ def test_far_tails_of_students_t_follow_the_density() -> None:
     assert two_sided_t(np.array([0.0]), np.array([9.0]))[0] == pytest.approx(1)
 
 
-@pytest.mark.parametrize(("f", "above", "below", "p"), [(4.35, 1, 20, 0.05), (2.98, 10, 10, 0.05), (2.52, 15, 30, 0.0151)])
+@pytest.mark.parametrize(
+    ("f", "above", "below", "p"), [(4.35, 1, 20, 0.05), (2.98, 10, 10, 0.05), (2.52, 15, 30, 0.0151)]
+)
 def test_fishers_f_has_the_tabulated_values(f: float, above: int, below: int, p: float) -> None:
     assert upper_f(f, above, below) == pytest.approx(p, rel=0.02)
 

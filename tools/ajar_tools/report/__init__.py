@@ -30,8 +30,8 @@ def write_report(path: Path, verdict: Verdict, settings: Settings, command: str)
     if verdict.pictures and all(np.isfinite(p.color).all() for p in verdict.pictures):
         data |= images(verdict, settings)
     page = resource("page.html")
-    # A closing tag inside a text must not end the script.
-    text = json.dumps(printable(data)).replace("</", "<\\/")
+    # A tag inside a text must not end the script.
+    text = json.dumps(printable(data)).replace("<", "\\u003c")
     parts = {"{{title}}": html.escape(verdict.headline()), "{{css}}": resource("page.css")}
     parts |= {"{{js}}": resource("page.js"), "{{data}}": text}
     for place, part in parts.items():

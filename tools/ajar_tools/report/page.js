@@ -188,7 +188,7 @@ function listen() {
   $("frame").onpointerdown = () => hold(true);
   addEventListener("pointerup", () => hold(false));
   addEventListener("keydown", (event) => {
-    if (event.target.matches("input, select")) return;
+    if (event.target.matches("select")) return;
     const button = $("modes").children[Number(event.key) - 1];
     if (button) setMode(button.dataset.mode);
     if (event.key === " " && !event.repeat) {

@@ -1,0 +1,202 @@
+"""The plug-in from outside: pytest runs on folders of cases, with a renderer that draws synthetic noise."""
+
+import json
+import os
+import re
+import sys
+import tomllib
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+FAKE_AJAR = f"""#!{sys.executable}
+# Draws what the scene says: seed, scale, noise. Fails when told to.
+import sys, tomllib
+from pathlib import Path
+sys.path.insert(0, {str(Path(__file__).parent)!r})
+from synthetic import file
+scene, output = Path(sys.argv[2]), Path(sys.argv[sys.argv.index("-o") + 1])
+recipe = tomllib.loads(scene.read_text())
+if recipe.pop("broken", False):
+    sys.exit("scene.toml:1:1: error: no camera")
+file(**recipe).write(output)
+"""
+
+
+@pytest.fixture
+def project(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pytest.Pytester:
+    """A folder with a renderer and one case, door."""
+    for name in ("CI", "GITHUB_ACTIONS", "PYTEST_ADDOPTS"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
+    program = pytester.path / "fake-ajar"
+    program.write_text(FAKE_AJAR)
+    program.chmod(0o755)
+    monkeypatch.setenv("AJAR_BIN", str(program))
+    write_scene(pytester.path, "door", seed=1)
+    return pytester
+
+
+def write_scene(root: Path, case: str, **recipe: object) -> Path:
+    folder = root / "tests" / "images" / case
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.toml").write_text("".join(f"{key} = {json.dumps(value)}\n" for key, value in recipe.items()))
+    return folder
+
+
+def run(project: pytest.Pytester, *arguments: str) -> pytest.RunResult:
+    plugins = ["-p", "ajar_tools.pytest_plugin", "-p", "xdist", "-p", "no:cacheprovider"]
+    return project.runpytest_subprocess(*plugins, *arguments, timeout=120)
+
+
+def test_missing_reference_fails_with_the_command_that_makes_it(project: pytest.Pytester) -> None:
+    result = run(project)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*door has no reference image*", "*pytest tests/images/door --ajar-update*"])
+    assert (project.path / "ajar-artifacts" / "door" / "new.exr").exists()
+
+
+def test_update_writes_a_reference_and_a_review_page_then_twins_pass(project: pytest.Pytester) -> None:
+    result = run(project, "--ajar-update")
+    result.assert_outcomes(passed=1)
+    result.stdout.fnmatch_lines(["*review the new references in*"])
+    assert (project.path / "ajar-artifacts" / "door" / "report.html").exists()
+    run(project).assert_outcomes(passed=1)
+    write_scene(project.path, "door", seed=2)
+    run(project).assert_outcomes(passed=1)
+    run(project, "--ajar-exact").assert_outcomes(failed=1)
+
+
+def test_changed_picture_fails_with_words_report_and_junit(project: pytest.Pytester) -> None:
+    run(project, "--ajar-update").assert_outcomes(passed=1)
+    write_scene(project.path, "door", seed=2, scale=1.05)
+    result = run(project, "--junitxml=junit.xml")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*DIFFERENT PICTURE*brighter*", "*report.html*", "*--ajar-update*"])
+    assert "Traceback" not in result.stdout.str()
+    failure = ElementTree.parse(project.path / "junit.xml").find(".//failure")
+    assert failure is not None
+    assert "DIFFERENT PICTURE" in str(failure.text)
+    index = (project.path / "ajar-artifacts" / "index.html").read_text()
+    assert 'href="door/report.html"' in index
+
+
+def test_update_keeps_old_and_new_side_by_side(project: pytest.Pytester) -> None:
+    run(project, "--ajar-update")
+    reference = project.path / "tests/images/door/reference.exr"
+    before = reference.read_bytes()
+    write_scene(project.path, "door", seed=2, scale=1.05)
+    run(project, "--ajar-update").assert_outcomes(passed=1)
+    assert reference.read_bytes() != before
+    artifacts = project.path / "ajar-artifacts" / "door"
+    assert (artifacts / "old.exr").read_bytes() == before
+    assert "DIFFERENT PICTURE" in (artifacts / "report.html").read_text()
+
+
+def test_update_is_refused_where_ci_is_set(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CI", "true")
+    result = run(project, "--ajar-update")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(["*refused because CI is set*"])
+    assert not (project.path / "tests/images/door/reference.exr").exists()
+
+
+def test_parallel_runs_give_the_same_results(project: pytest.Pytester) -> None:
+    for case in ("a", "b", "c", "d"):
+        write_scene(project.path, case, seed=1)
+    run(project, "--ajar-update", "-n", "3").assert_outcomes(passed=5)
+    write_scene(project.path, "c", seed=3, scale=0.9)
+    run(project, "-n", "3").assert_outcomes(passed=4, failed=1)
+    verdicts = sorted((project.path / "ajar-artifacts").glob("*/verdict.json"))
+    assert [json.loads(path.read_text())["outcome"] for path in verdicts] == ["pass", "pass", "fail", "pass", "pass"]
+
+
+def test_github_sees_an_annotation_at_the_case(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    run(project, "--ajar-update")
+    write_scene(project.path, "door", seed=2, scale=1.05)
+    monkeypatch.setenv("GITHUB_ACTIONS", "true")
+    output = run(project).stdout.str()
+    assert re.search(
+        r"^::error file=tests/images/door/scene\.toml,title=image differs::DIFFERENT", output, re.MULTILINE
+    )
+
+
+def test_a_renderer_that_fails_is_quoted(project: pytest.Pytester) -> None:
+    write_scene(project.path, "door", broken=True)
+    result = run(project)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*ended with exit code 1*", "*scene.toml:1:1: error: no camera*"])
+
+
+def test_a_renderer_that_is_missing_is_a_failure(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AJAR_BIN", "/nowhere/ajar")
+    result = run(project)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*there is no program /nowhere/ajar*"])
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("flip_maen = 0.1", '*unknown key "flip_maen"; did you mean "flip_mean"*'),
+        ('alpha = "small"', "*alpha must be a number*"),
+        ('[[excused]]\ngate = "flip"\nreason = "noise"', "*needs gate, reason and until*"),
+        ('[[excused]]\ngate = "finite"\nreason = "x"\nuntil = 2999-01-01', "*cannot be excused*"),
+        ('[[excused]]\ngate = "flip"\nreason = "old"\nuntil = 2020-01-01', "*ended on 2020-01-01 (old)*"),
+        ("[render]\nscen = 1", "*knows scene, arguments, command and timeout*"),
+    ],
+)
+def test_mistakes_in_compare_toml_are_errors(text: str, complaint: str, project: pytest.Pytester) -> None:
+    (project.path / "tests/images/door/compare.toml").write_text(text)
+    result = run(project)
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines([complaint])
+
+
+def test_an_exception_lets_a_gate_fail_and_is_shown(project: pytest.Pytester) -> None:
+    run(project, "--ajar-update")
+    folder = write_scene(project.path, "door", seed=2, scale=1.05)
+    (folder / "compare.toml").write_text(
+        '[[excused]]\ngate = "statistics"\nreason = "new lamp, issue 12"\nuntil = 2999-01-01\n'
+    )
+    run(project).assert_outcomes(passed=1)
+    verdict = json.loads((project.path / "ajar-artifacts/door/verdict.json").read_text())
+    assert verdict["exceptions"] == ["statistics, until 2999-01-01: new lamp, issue 12"]
+
+
+def test_another_renderer_is_run_by_its_command(project: pytest.Pytester) -> None:
+    folder = project.path / "tests/images/door"
+    command = [os.environ["AJAR_BIN"], "render", "{scene}", "-o", "{output}"]
+    (folder / "compare.toml").write_text(f"[render]\ncommand = {json.dumps(command)}\n")
+    assert tomllib.loads((folder / "compare.toml").read_text())
+    run(project, "--ajar-update", "--ajar-binary", "/nowhere/ajar").assert_outcomes(passed=1)
+
+
+def test_fixtures_compare_from_python(project: pytest.Pytester) -> None:
+    project.makepyfile(
+        """
+        def test_same(ajar_render, ajar_compare):
+            image = ajar_render("tests/images/door/scene.toml")
+            assert ajar_compare(image, image).gates
+
+        def test_other(ajar_render, ajar_compare):
+            from pathlib import Path
+            image = ajar_render("tests/images/door/scene.toml")
+            Path("brighter.toml").write_text("seed = 2\\nscale = 1.1")
+            ajar_compare(ajar_render("brighter.toml", name="other.exr"), image)
+        """
+    )
+    result = run(project, "test_fixtures_compare_from_python.py")
+    result.assert_outcomes(passed=1, failed=1)
+    assert (project.path / "ajar-artifacts/test_other/report.html").exists()
+
+
+def test_a_folder_of_somebody_else_is_not_emptied(project: pytest.Pytester) -> None:
+    folder = project.path / "ajar-artifacts"
+    folder.mkdir()
+    (folder / "thesis.tex").touch()
+    result = run(project)
+    assert result.ret != 0
+    assert (folder / "thesis.tex").exists()

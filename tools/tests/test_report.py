@@ -1,0 +1,123 @@
+"""The report in a real browser: it draws what it says, without errors and without the network."""
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from synthetic import file
+
+from ajar_tools import Settings, compare
+from ajar_tools.report import write_report
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+# The sum of all colours on the canvas.
+BRIGHTNESS = """() => {
+    const c = document.getElementById("canvas");
+    return c.getContext("2d").getImageData(0, 0, c.width, c.height).data.reduce((sum, v) => sum + v, 0);
+}"""
+
+
+def report(folder: Path, name: str = "new.exr") -> Path:
+    """Of an image whose green block is too bright."""
+    spoiled = file(seed=2)
+    spoiled.pixels[40:48, 16:24, 1] *= 1.5
+    reference = file(seed=1, rounds=64).write(folder / "reference.exr")
+    verdict = compare(spoiled.write(folder / name), reference)
+    path = folder / "report.html"
+    write_report(path, verdict, Settings(), f"ajar-compare {name} reference.exr")
+    return path
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    if CHROMIUM is None:
+        pytest.skip("there is no chromium (Debian: apt-get install chromium)")
+    sync_api = pytest.importorskip("playwright.sync_api")
+    path = report(tmp_path_factory.mktemp("report"))
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        page = browser.new_page(viewport={"width": 1280, "height": 900}, offline=True)
+        page.problems = []
+        page.on("pageerror", lambda error: page.problems.append(str(error)))
+        page.on("request", lambda request: request.url.startswith("http") and page.problems.append(request.url))
+        page.goto(path.as_uri())
+        page.wait_for_selector("body[data-ready=yes]", timeout=60_000)
+        yield page
+        browser.close()
+
+
+def shown(page: Any) -> str:
+    return page.get_attribute("#canvas", "data-shown")
+
+
+def test_verdict_gates_and_command_are_there(page: Any) -> None:
+    assert page.inner_text("#word") == "DIFFERENT PICTURE"
+    assert "brighter in G" in page.inner_text("#reason")
+    assert page.locator("#gates tbody tr").count() == 7
+    assert page.locator("#gates td.fail").count() >= 1
+    assert page.inner_text("#command") == "ajar-compare new.exr reference.exr"
+    assert page.problems == []
+
+
+def test_holding_the_mouse_or_space_swaps(page: Any) -> None:
+    page.keyboard.press("1")
+    assert shown(page) == "new"
+    new = page.evaluate(BRIGHTNESS)
+    page.keyboard.down(" ")
+    assert shown(page) == "reference"
+    assert page.evaluate(BRIGHTNESS) != new
+    page.keyboard.up(" ")
+    page.hover("#frame")
+    page.mouse.down()
+    assert shown(page) == "reference"
+    page.mouse.up()
+    assert shown(page) == "new"
+
+
+def test_exposure_brightens(page: Any) -> None:
+    page.keyboard.press("3")
+    before = page.evaluate(BRIGHTNESS)
+    page.fill("#exposure", "1.5")
+    assert page.inner_text("#stops") == "+1.5 EV"
+    assert page.evaluate(BRIGHTNESS) > before
+
+
+def test_wipe_follows_the_pointer(page: Any) -> None:
+    page.keyboard.press("2")
+    box = page.locator("#frame").bounding_box()
+    images = []
+    for fraction in (0.2, 0.9):
+        page.mouse.move(box["x"] + fraction * box["width"], box["y"] + 30)
+        images.append(page.evaluate(BRIGHTNESS))
+    assert images[0] != images[1]
+    assert "pixel (" in page.inner_text("#pixel")
+
+
+@pytest.mark.parametrize("mode", ["difference", "significance", "flip"])
+def test_maps_are_brightest_at_the_spoiled_block(mode: str, page: Any) -> None:
+    page.click(f"button[data-mode={mode}]")
+    assert shown(page) == mode
+    colour = (
+        """([x, y]) => Array.from(document.getElementById("canvas").getContext("2d").getImageData(x, y, 1, 1).data)"""
+    )
+    inside, outside = page.evaluate(colour, [20, 44]), page.evaluate(colour, [60, 20])
+    if mode == "difference":
+        assert inside[0] > inside[2]
+    else:
+        assert sum(inside) > sum(outside)
+
+
+def test_the_block_is_framed_and_zoom_scales(page: Any) -> None:
+    page.select_option("#zoom", "4")
+    box = page.locator("#block").bounding_box()
+    frame = page.locator("#frame").bounding_box()
+    assert (box["x"] - frame["x"], box["width"]) == pytest.approx((64, 32), abs=1)
+
+
+def test_names_cannot_inject(tmp_path: Path) -> None:
+    text = report(tmp_path, name="a<script>alert(1)<!--.exr").read_text("utf-8")
+    assert "<script>alert" not in text.split('<script id="data"')[0]
+    data = text.split('type="application/json">')[1].split("</script>")[0]
+    assert "<!--" not in data
