@@ -51,7 +51,7 @@ fn settings_go_before_the_file_and_behind_the_flags() {
             .exits(0)
             .out
     };
-    assert!(dry("").contains("32x20") && dry("").contains("by path"));
+    assert!(dry("").contains("32x20") && dry("").contains("by ajar"));
     assert!(dry("--set render.integrator=bdpt").contains("by bdpt"));
     assert!(dry("--set render.crop=[0,0.5,0,1]").contains("16x20 pixels of 32x20"));
     assert!(dry("--set output.path=other.exr").contains("other.exr"));
