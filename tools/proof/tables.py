@@ -26,10 +26,10 @@ PAGE = Path(__file__).parents[2] / "docs" / "compare-proof.md"
 RECIPE = Recipe(width=128, height=96, rounds=16, noise=0.5)
 HEAD = """# What the comparison finds
 
-Made by `.venv/bin/python tools/proof/tables.py{flags}`. Synthetic images of 128×96 pixels, 16 rounds, 50 %
-noise a pixel and round (skewed, as light is), against a reference of 64 rounds. Every number is a fraction of trials with new
-seeds. *Tuned* rules have the smallest limits that let five twins pass, with a tenth to spare. *z a pixel* is the rule of
-Mitsuba 3's own tests.
+Made by `.venv/bin/python tools/proof/tables.py{flags}`. Synthetic images of 128×96 pixels, 16 rounds, 50 % noise a
+pixel and round (skewed, as light is), against a reference of 64 rounds. Every number is a fraction of trials with new
+seeds. *Tuned* rules have the smallest limits that let five twins pass, and a tenth to spare. *z a pixel* is the rule
+of Mitsuba 3's own tests.
 """
 
 
