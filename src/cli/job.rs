@@ -1,6 +1,8 @@
 //! What to render and where to write it: the command line over the scene file over the defaults.
 
-use ajar_integrators::{Integrator, Settings, Window, integrators, stop::StopRules};
+use std::collections::BTreeMap;
+
+use ajar_integrators::{Integrator, Settings, Window, integrators, mlt::mutations, stop::StopRules};
 use ajar_output::ToneMap;
 use ajar_scene::{Cause, Diagnostic, OutputSettings, RenderSettings};
 
@@ -45,7 +47,7 @@ impl Job {
         let (rules, samples_per_round) = stop_rules(args, render, integrator.samples_per_round());
         let seed = args.seed.or(render.seed).unwrap_or(0);
         let window = window(args, render, size)?;
-        let settings = Settings { seed, max_depth, samples_per_round, window };
+        let settings = Settings { seed, max_depth, samples_per_round, window, mutations: mutations(render)? };
         Ok(Self { integrator, size, settings, rules, destination: destination(args, output)? })
     }
 
@@ -74,6 +76,20 @@ fn find_integrator(name: &str) -> Result<&'static dyn Integrator, Diagnostic> {
         wrong(format!("there is no integrator \"{name}\""))
             .hint(format!("choose one of: {}", known.join(", ")))
     })
+}
+
+/// Weights of mutations, their names checked.
+fn mutations(render: &RenderSettings) -> Result<BTreeMap<String, f64>, Diagnostic> {
+    let known: Vec<_> = mutations::names().collect();
+    if let Some(name) = render.mutations.keys().find(|name| !known.contains(&name.as_str())) {
+        return Err(wrong(format!("there is no mutation \"{name}\""))
+            .element("render.mutations")
+            .hint(format!("choose from: {}", known.join(", "))));
+    }
+    if known.iter().all(|name| render.mutations.get(*name) == Some(&0.0)) {
+        return Err(wrong("all mutations are switched off").element("render.mutations"));
+    }
+    Ok(render.mutations.clone())
 }
 
 /// Stop rules given on the command line replace all those of the file.

@@ -1,5 +1,6 @@
 //! The contract of integrators and their list.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ajar_render::{World, film::RoundFilm};
@@ -21,6 +22,8 @@ pub struct Settings {
     pub samples_per_round: u32,
     /// Pixels to render.
     pub window: Window,
+    /// Weights of mutations by name, where they shall not be the usual ones; 0 switches one off.
+    pub mutations: BTreeMap<String, f64>,
 }
 
 impl Settings {

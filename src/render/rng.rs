@@ -18,6 +18,8 @@ pub enum Purpose {
     Chain = 6,
     /// Light seen directly.
     Direct = 7,
+    /// Strata of Markov chains.
+    Strata = 8,
     /// Tests.
     Test = 99,
 }
@@ -81,14 +83,14 @@ fn philox(mut c: [u32; 4], mut k: [u32; 2]) -> [u32; 4] {
 /// The next number of a cheap stream whose whole state is a seed (Steele, Lea & Flood 2014, "Fast Splittable Pseudorandom
 /// Number Generators").
 #[inline]
-pub(crate) fn splitmix(state: &mut u64) -> u64 {
+pub fn splitmix(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     mix(*state)
 }
 
 /// A permutation of 64 bits in which each depends on all (Stafford's variant 13 of MurmurHash3's finalizer).
 #[inline]
-pub(crate) fn mix(mut x: u64) -> u64 {
+pub fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     x ^ (x >> 31)

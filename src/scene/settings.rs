@@ -1,7 +1,7 @@
 //! How to render and what to write, as far as a scene file says it; `None` means that it says nothing, so that the
 //! command line can overrule and defaults apply last.
 
-use std::{path::PathBuf, time::Duration};
+use std::{collections::BTreeMap, path::PathBuf, time::Duration};
 
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +29,9 @@ pub struct RenderSettings {
     pub max_depth: Option<u32>,
     /// The part of the image to render: left, right, top, bottom as fractions of the size. Default all, `[0, 1, 0, 1]`.
     pub crop: Option<[f64; 4]>,
+    /// Weights, 0 or more, of mutations of Metropolis light transport, where they shall not be the usual ones. Names are
+    /// not checked here.
+    pub mutations: BTreeMap<String, f64>,
 }
 
 /// The table `[output]`. Names of tone maps and AOVs are not checked here: their lists live with the writers.

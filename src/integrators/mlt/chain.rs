@@ -8,6 +8,7 @@ use super::{
     path::{Path, Space},
     proposal::Proposal,
     stats::ChainStats,
+    strata::Strata,
     target::{Aim, Target},
 };
 
@@ -53,9 +54,9 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// Begins again at `seed`, whose f* is not 0, with the random numbers of `rng`.
-    pub fn start(&mut self, seed: &Path, rng: Rng) {
-        self.rng = rng;
+    /// Begins again at `seed`, whose f* is not 0, with the random numbers of `rng` and the chain's place among others.
+    pub fn start(&mut self, seed: &Path, rng: Rng, strata: Strata) {
+        (self.rng, self.y.strata) = (rng, strata);
         self.x.copy_from(seed);
         self.aim = self.kernel.target.aim(seed);
         self.selection = self.selection_at(seed);

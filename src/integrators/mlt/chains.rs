@@ -7,6 +7,7 @@ use super::{
     chain::{Chain, Kernel},
     path::Path,
     stats::ChainStats,
+    strata::Strata,
     target::Aim,
 };
 use crate::{Context, Report, bdpt::Tracer};
@@ -48,7 +49,8 @@ impl<'a> Chains<'a> {
                         return None;
                     }
                     find_seed(index, tracer, path)?;
-                    chain.start(path, stream(index));
+                    let key = Rng::new(seed, Purpose::Strata, self.round, 0).next_u32();
+                    chain.start(path, stream(index), Strata::new(index as u32, count as u32, key.into()));
                     chain.run(STEPS, &record);
                     Some(std::mem::take(&mut chain.stats))
                 },

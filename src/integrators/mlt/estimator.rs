@@ -51,7 +51,7 @@ impl Integrator for Ajar {
             return PathTracer.prepare(cx);
         }
         let space = Space::new(cx.world, cx.settings.window, cx.settings.max_depth);
-        let (mutations, table) = mutations();
+        let (mutations, table) = mutations(&cx.settings.mutations);
         Box::new(AjarRounds { cx, space, plan, mutations, table, totals: Mutex::default() })
     }
 }

@@ -15,6 +15,7 @@ pub mod plain;
 pub mod proposal;
 pub mod seeds;
 pub mod stats;
+pub mod strata;
 pub mod target;
 
 pub use estimator::Ajar;

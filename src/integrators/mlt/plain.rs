@@ -62,7 +62,7 @@ impl<'a> PlainChains<'a> {
     /// All mutations with their default weights.
     pub fn new(cx: Context<'a>) -> Self {
         let space = Space::new(cx.world, cx.settings.window, cx.settings.max_depth);
-        let (mutations, table) = mutations();
+        let (mutations, table) = mutations(&cx.settings.mutations);
         Self { cx, space, mutations, table }
     }
 

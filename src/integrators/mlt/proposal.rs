@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3};
 use super::{
     Reject,
     path::{Node, Path, Space},
+    strata::Strata,
 };
 use crate::bdpt::MAX_VERTICES;
 
@@ -31,6 +32,8 @@ pub struct Proposal {
     to_eye: DVec3,
     /// Whether the lens of the eye's side is new.
     new_lens: bool,
+    /// Where the chain stands among others.
+    pub strata: Strata,
     /// Rays cast so far.
     pub rays: u64,
 }
@@ -45,6 +48,7 @@ impl Default for Proposal {
             to_light: DVec3::ZERO,
             to_eye: DVec3::ZERO,
             new_lens: false,
+            strata: Strata::default(),
             rays: 0,
         }
     }
@@ -86,6 +90,12 @@ impl Proposal {
     /// Whether the eye's side has only a kept vertex so far, the lens.
     pub fn starts_at_kept_lens(&self) -> bool {
         matches!(self.tail.as_slice(), [node] if node.vertex.kind == Kind::Lens) && !self.new_lens
+    }
+
+    /// Whether the eye's side scatters smoothly anywhere between its ends.
+    pub fn has_smooth_between_ends(&self) -> bool {
+        let between = 1..self.tail.len().saturating_sub(1);
+        self.tail[between].iter().any(|node| node.vertex.connectable())
     }
 
     /// Adds `x0` as the new light end.
@@ -167,7 +177,7 @@ impl Proposal {
                 self.push_lens(space, rng.pair());
                 continue;
             }
-            let kept = i == 0;
+            let kept = i == 0 && !self.new_lens;
             let index = self.tail.len() - 1;
             let vertex = &mut self.tail[index].vertex;
             if vertex.kind == Kind::Lens {

@@ -3,6 +3,8 @@
 
 mod common;
 
+use std::collections::BTreeMap;
+
 use ajar_integrators::mlt::{
     Aux, Mutation, Reject,
     chain::{Kernel, State, ratio},
@@ -42,7 +44,7 @@ fn close(a: f64, b: f64) -> bool {
 /// Proposals know their densities both ways, and nothing kept from the old path is stale in the new one.
 #[test]
 fn proposals_can_be_read_backwards() {
-    let (list, _) = mutations();
+    let (list, _) = mutations(&BTreeMap::new());
     for scene in SCENES {
         let world = (scene.world)();
         let (space, paths) = seeds(&world, scene.depth, 400);

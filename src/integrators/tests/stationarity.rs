@@ -5,9 +5,13 @@
 
 mod common;
 
+use std::collections::BTreeMap;
+
 use ajar_integrators::mlt::{
     Aux, Mutation, Reject,
-    mutations::{Bidirectional, Caustic, Chances, Lens, MultiChain, Technique, Window, mutations},
+    mutations::{
+        Bidirectional, Caustic, Chances, Lens, LensSubpath, MultiChain, Technique, Window, mutations,
+    },
     path::{Path, Space},
     proposal::Proposal,
     target::{Plain, Target},
@@ -46,6 +50,7 @@ fn every_mutation_alone() {
         (&MultiChain, ["mirror and glass", "mirror and glass"]),
         (&Window, ["rough metal and plastic", "mirror and glass"]),
         (&Technique, ["rough metal and plastic", "mirror and glass"]),
+        (&LensSubpath, ["rough metal and plastic", "mirror and glass"]),
     ] {
         let distinct = if scenes[0] == scenes[1] { &scenes[..1] } else { &scenes[..] };
         distinct.iter().for_each(|name| check(scene(name), &[mutation], &Plain));
@@ -54,7 +59,7 @@ fn every_mutation_alone() {
 
 #[test]
 fn all_together() {
-    SCENES.iter().for_each(|scene| check(scene, &mutations().0, &Plain));
+    SCENES.iter().for_each(|scene| check(scene, &mutations(&BTreeMap::new()).0, &Plain));
 }
 
 /// Another density: short paths and the left of the image count more.
@@ -69,7 +74,7 @@ impl Target for Tilted {
 
 #[test]
 fn under_another_target() {
-    check(scene("mirror and glass"), &mutations().0, &Tilted);
+    check(scene("mirror and glass"), &mutations(&BTreeMap::new()).0, &Tilted);
 }
 
 /// A mutation that gets its density wrong by the exponential of `error`.

@@ -2,14 +2,20 @@
 //! so the readers are the one definition of the file's keys. Changes from the command line lie over the file's tables and
 //! are read by the same readers.
 
-use std::{collections::BTreeMap, ops::Range};
+use std::{
+    collections::BTreeMap,
+    ops::{Range, RangeBounds},
+};
 
 use toml::{
     Spanned,
     de::{DeTable, DeValue},
 };
 
-use super::report::{Complaint, Report, advice};
+use super::{
+    report::{Complaint, Report, advice},
+    value::number,
+};
 use crate::Diagnostic;
 
 type Entry<'a> = &'a Spanned<DeValue<'a>>;
@@ -237,6 +243,18 @@ impl<'a> Keys<'a> {
             }
         }
         found
+    }
+
+    /// All numbers of this table, whatever their names.
+    pub fn numbers_by_name(mut self, range: impl RangeBounds<f64> + Clone) -> BTreeMap<String, f64> {
+        let names: Vec<String> = [self.table, self.changes]
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|(name, _)| name.get_ref().to_string())
+            .collect();
+        let value = |name: String| Some((name.clone(), self.optional(&name, number(range.clone()))?));
+        names.into_iter().filter_map(value).collect()
     }
 
     /// Reports all keys that nothing read.

@@ -27,6 +27,7 @@ pub(super) fn render(mut keys: Keys<'_>) -> RenderSettings {
         seed: keys.optional("seed", whole(0..)).map(|seed| seed as u64),
         max_depth: keys.optional("max_depth", whole(1..=i64::from(u32::MAX))).map(|depth| depth as u32),
         crop: keys.optional("crop", crop),
+        mutations: keys.table("mutations").map(|keys| keys.numbers_by_name(0.0..)).unwrap_or_default(),
     };
     if settings.noise == Some(0.0) {
         keys.complain("noise", Complaint::new("must be greater than 0, is 0"));

@@ -10,6 +10,7 @@ use ajar_integrators::{
         choice::{CLASSES, Table, class},
         path::{Path, Space},
         seeds::{Bootstrap, Candidate, resample},
+        strata::Strata,
         target::Target,
     },
 };
@@ -102,7 +103,8 @@ pub fn drift(
                 if bootstrap.replay(&candidates[seed as usize], &mut tracer, &mut path).is_none() {
                     continue;
                 }
-                chain.start(&path, stream(block << 32 | i));
+                let strata = Strata::new(i as u32, chosen.len() as u32, block as u64);
+                chain.start(&path, stream(block << 32 | i), strata);
                 let mut change = Vec::<(usize, f64)>::new();
                 for q in features(&path, world) {
                     change.push((q, -1.0));
