@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
-
 from ajar_tools.statistics import NAMES, block_means
 
 Change = Callable[[np.ndarray], np.ndarray]

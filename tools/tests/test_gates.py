@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from synthetic import File, Recipe, file
-
 from ajar_tools import Outcome, Settings, Verdict, compare
 from ajar_tools.verdict import Status
+from synthetic import File, Recipe, file
 
 TWINS = 60
 

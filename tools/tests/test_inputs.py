@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from synthetic import file
-
 from ajar_tools import CannotCompareError, Outcome, compare, read
+from synthetic import file
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from ajar_tools.flip import exposures_for, hdr_flip
 from ajar_tools.statistics import SIDES, WHOLE, block_means, from_rounds
 from ajar_tools.student import two_sided_t, upper_f

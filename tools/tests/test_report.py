@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from synthetic import file
-
 from ajar_tools import Settings, compare
 from ajar_tools.report import write_report
+from synthetic import file
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 # The sum of all colours on the canvas.
