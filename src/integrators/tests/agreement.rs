@@ -19,8 +19,8 @@ use common::{
 fn path_tracing_and_bidirectional_path_tracing() {
     for scene in SCENES {
         let world = (scene.world)();
-        let path = render(&world, &PathTracer, &settings(&world, 1, scene.depth, 64), 24);
-        let bdpt = render(&world, &Bdpt, &settings(&world, 2, scene.depth, 16), 24);
+        let path = render(&world, &PathTracer, &settings(&world, 1, scene.depth, 32), 24);
+        let bdpt = render(&world, &Bdpt, &settings(&world, 2, scene.depth, 8), 24);
         assert_same(scene.name, &path, &bdpt, world.camera.width as usize);
     }
 }
@@ -29,11 +29,11 @@ fn path_tracing_and_bidirectional_path_tracing() {
 fn bidirectional_path_tracing_and_metropolis_light_transport() {
     for scene in SCENES {
         let world = (scene.world)();
-        let bdpt = render_blocks(&world, &Bdpt, &settings(&world, 3, scene.depth, 16), 24);
-        let mlt = render_blocks(&world, &Mlt, &settings(&world, 4, scene.depth, 64), 48);
+        let bdpt = render_blocks(&world, &Bdpt, &settings(&world, 3, scene.depth, 12), 24);
+        let mlt = render_blocks(&world, &Mlt, &settings(&world, 4, scene.depth, 48), 32);
         assert_blocks_agree(&format!("{}, mlt", scene.name), &bdpt, &mlt);
         let ajar = Ajar { always: true };
-        let ajar = render_blocks(&world, &ajar, &settings(&world, 5, scene.depth, 16), 32);
+        let ajar = render_blocks(&world, &ajar, &settings(&world, 5, scene.depth, 8), 24);
         assert_blocks_agree(&format!("{}, ajar", scene.name), &bdpt, &ajar);
     }
 }
