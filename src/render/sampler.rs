@@ -93,7 +93,7 @@ impl Sobol {
     /// A number in [0, 1) that is random from sample to sample: for what gains nothing by even spread.
     #[inline]
     pub fn random(&mut self) -> f64 {
-        (splitmix(&mut self.random) >> 12) as f64 * (1.0 / (1u64 << 52) as f64)
+        fraction(splitmix(&mut self.random) >> 12)
     }
 
     #[inline]
@@ -113,17 +113,22 @@ impl Sobol {
         let (ab, cd, order) = (splitmix(&mut seeds), splitmix(&mut seeds), splitmix(&mut seeds) as u32);
         let index = owen(self.index.reverse_bits(), order) >> (32 - SAMPLE_BITS);
         let scrambles = [ab as u32, (ab >> 32) as u32, cd as u32, (cd >> 32) as u32];
-        // The 16 bits below those of Sobol' and scramble keep values from tying.
+        // Bits below those of Sobol' and scramble keep values from tying.
         let low = splitmix(&mut self.random);
         let mut point = sobol(index);
         for k in 0..4 {
             point[k] = owen(point[k], scrambles[k]).reverse_bits();
         }
         for k in 0..4 {
-            let bits = u64::from(point[k]) << 16 | low >> (16 * k) & 0xFFFF;
-            self.set[k] = bits as f64 * (1.0 / (1u64 << 48) as f64);
+            self.set[k] = fraction(u64::from(point[k]) << 20 | low >> (16 * k) & 0xFFFF);
         }
     }
+}
+
+/// The number in [0, 1) with these 52 bits: the mantissa of one in [1, 2).
+#[inline]
+fn fraction(bits: u64) -> f64 {
+    f64::from_bits(1f64.to_bits() | bits) - 1.0
 }
 
 /// Owen scrambling of numbers whose bits are in reverse order: a bit changes with those below it.

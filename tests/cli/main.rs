@@ -6,6 +6,7 @@ mod bench;
 mod commands;
 mod exits;
 mod images;
+mod messages;
 mod set;
 #[cfg(unix)]
 mod signals;

@@ -51,7 +51,7 @@ fn settings_go_before_the_file_and_behind_the_flags() {
             .exits(0)
             .out
     };
-    assert!(dry("").contains("32x20") && dry("").contains("by path"));
+    assert!(dry("").contains("32x20") && dry("").contains("by ajar"));
     assert!(dry("--set render.integrator=bdpt").contains("by bdpt"));
     assert!(dry("--set render.crop=[0,0.5,0,1]").contains("16x20 pixels of 32x20"));
     assert!(dry("--set output.path=other.exr").contains("other.exr"));
@@ -84,28 +84,4 @@ fn mistakes_are_2_and_name_the_nearest() {
     bench.run("render leaf.gltf --set light.sun.color=[1,0,0]").exits(2).says(&["no such light"]);
     bench.run("validate leaf.gltf --set material.clay.roughnes=1").exits(2).says(&["\"roughness\""]);
     assert_eq!(bench.files(), ["kitchen", "leaf.gltf"], "nothing is written");
-}
-
-#[test]
-fn messages_and_results_as_json() {
-    let bench = Bench::new();
-    let lines = |text: &str| -> Vec<Value> {
-        text.lines()
-            .map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}")))
-            .collect()
-    };
-    let run = bench.run("render leaf.gltf --size 8x8 --rounds 3 --log-format json -v").exits(0);
-    let said = lines(&run.err);
-    assert!(
-        said.len() >= 2 && said.iter().all(|it| it["type"] == "message" && it["severity"] == "note"),
-        "{said:?}"
-    );
-    let result = &lines(&run.out)[0];
-    assert_eq!((&result["type"], &result["stats"]["rounds"]), (&"result".into(), &3.into()));
-    assert!(result["exr"].as_str().unwrap().ends_with("leaf.exr"));
-
-    let run = bench.run("--log-format json validate kitchen/scene.toml --set render.spp=0").exits(2);
-    let said = lines(&run.err);
-    assert_eq!((&said[0]["severity"], &said[0]["cause"]), (&"error".into(), &"usage".into()), "{said:?}");
-    assert_eq!(said[0]["element"], "--set render.spp");
 }

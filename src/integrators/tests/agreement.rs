@@ -11,7 +11,7 @@ use ajar_integrators::{
 use common::{
     compare::{assert_blocks_agree, assert_same},
     render, render_blocks,
-    scenes::SCENES,
+    scenes::{POINT_LIGHT_AND_GLASS, SCENES},
     settings,
 };
 
@@ -19,21 +19,21 @@ use common::{
 fn path_tracing_and_bidirectional_path_tracing() {
     for scene in SCENES {
         let world = (scene.world)();
-        let path = render(&world, &PathTracer, &settings(&world, 1, scene.depth, 64), 24);
-        let bdpt = render(&world, &Bdpt, &settings(&world, 2, scene.depth, 16), 24);
+        let path = render(&world, &PathTracer, &settings(&world, 1, scene.depth, 32), 24);
+        let bdpt = render(&world, &Bdpt, &settings(&world, 2, scene.depth, 8), 24);
         assert_same(scene.name, &path, &bdpt, world.camera.width as usize);
     }
 }
 
 #[test]
 fn bidirectional_path_tracing_and_metropolis_light_transport() {
-    for scene in SCENES {
+    for scene in SCENES.iter().chain([&POINT_LIGHT_AND_GLASS]) {
         let world = (scene.world)();
-        let bdpt = render_blocks(&world, &Bdpt, &settings(&world, 3, scene.depth, 16), 24);
-        let mlt = render_blocks(&world, &Mlt, &settings(&world, 4, scene.depth, 64), 48);
+        let bdpt = render_blocks(&world, &Bdpt, &settings(&world, 3, scene.depth, 12), 24);
+        let mlt = render_blocks(&world, &Mlt, &settings(&world, 4, scene.depth, 48), 32);
         assert_blocks_agree(&format!("{}, mlt", scene.name), &bdpt, &mlt);
         let ajar = Ajar { always: true };
-        let ajar = render_blocks(&world, &ajar, &settings(&world, 5, scene.depth, 16), 32);
+        let ajar = render_blocks(&world, &ajar, &settings(&world, 5, scene.depth, 8), 24);
         assert_blocks_agree(&format!("{}, ajar", scene.name), &bdpt, &ajar);
     }
 }

@@ -215,21 +215,21 @@ impl Geometry {
         if ray.t_max <= 0.0 || ray.t_max.is_nan() {
             return None;
         }
-        let best = find_in::<ANY, FILTER>(&self.baked, None, ray, &accept);
-        if self.tlas.is_empty() || (ANY && best.is_some()) {
-            return best;
+        let mut best = find_in::<ANY, FILTER>(&self.baked, None, ray, &accept);
+        if !(self.tlas.is_empty() || (ANY && best.is_some())) {
+            self.find_placed::<ANY, FILTER>(ray, &mut best, &accept);
         }
-        self.find_placed::<ANY, FILTER>(ray, best, &accept)
+        best
     }
 
-    /// What is nearer than `best` among the placements of the top level.
+    /// Replaces `best` by what is nearer among the placements of the top level.
     #[inline(never)]
     fn find_placed<const ANY: bool, const FILTER: bool>(
         &self,
         ray: &Ray,
-        mut best: Option<Met>,
+        best: &mut Option<Met>,
         accept: &impl Fn(&Hit) -> bool,
-    ) -> Option<Met> {
+    ) {
         let mut rest = Ray { t_max: best.map_or(ray.t_max, |met| met.hit.t), ..*ray };
         self.tlas.walk(ray.origin, ray.direction, rest.t_max, |one| {
             let local = Ray {
@@ -241,12 +241,11 @@ impl Geometry {
             if let Some(met) = found.filter(|met| best.is_none_or(|b| is_before(&met.hit, &b.hit))) {
                 let [a, b, c] = met.vertices;
                 let vertices = [a, b, c].map(|p| one.to_world.transform_point3(p));
-                best = Some(Met { vertices, ..met });
+                *best = Some(Met { vertices, ..met });
                 rest.t_max = if ANY { f64::NEG_INFINITY } else { met.hit.t };
             }
             rest.t_max
         });
-        best
     }
 
     /// Bytes held by triangles, trees and placements.

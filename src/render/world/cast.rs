@@ -31,14 +31,18 @@ impl World {
         vertex: &mut Vertex,
     ) -> bool {
         let ray = Ray::new(origin, direction);
-        let met = if self.has_alpha || (from_lens && self.has_culling) {
-            self.nearest_solid(&ray, from_lens, seed)
+        if self.has_alpha || (from_lens && self.has_culling) {
+            self.nearest_solid(&ray, from_lens, seed).is_some_and(|met| self.set_met(&met, vertex))
         } else {
-            self.geometry.nearest(&ray)
-        };
-        let Some(Met { hit, vertices }) = met else { return false };
+            self.geometry.nearest(&ray).is_some_and(|met| self.set_met(&met, vertex))
+        }
+    }
+
+    /// Makes `vertex` that of a hit; always true.
+    #[inline]
+    fn set_met(&self, Met { hit, vertices }: &Met, vertex: &mut Vertex) -> bool {
         let uv = [f64::from(hit.u), f64::from(hit.v)];
-        self.set_surface(Site { instance: hit.instance, triangle: hit.triangle, uv }, &vertices, vertex);
+        self.set_surface(Site { instance: hit.instance, triangle: hit.triangle, uv }, vertices, vertex);
         true
     }
 

@@ -174,3 +174,18 @@ fn partial_opacity() -> World {
     b.mesh(shapes::quad(Vec3::new(-0.8, -0.9, 0.3), Vec3::X * 0.9, Vec3::Y * 0.9), veil);
     b.world(32)
 }
+
+/// Caustics of a light without extent, which path tracing does not find.
+pub const POINT_LIGHT_AND_GLASS: TestScene = scene("point light and glass", 6, point_light_and_glass);
+
+fn point_light_and_glass() -> World {
+    let mut b = room(false);
+    let glass = b.material(Material {
+        transmission: Input::constant(1.0),
+        roughness: Input::constant(0.0),
+        ..Material::default()
+    });
+    b.mesh(shapes::cuboid(Vec3::new(-0.5, -0.3, -0.4), Vec3::new(0.4, 0.0, 0.4), false), glass);
+    b.light(LightKind::Point { intensity: 3.0 }, DVec3::new(0.1, 0.8, 0.1), DVec3::ZERO);
+    b.world(32)
+}
