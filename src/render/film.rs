@@ -5,8 +5,10 @@
 //! which mean and variance follow (mlt.md §6–7 of the design: rounds are independent copies, Veach & Guibas 1997 §3.4).
 
 mod blocks;
+mod state;
 
 pub use blocks::BLOCK_SIDES;
+pub use state::FilmState;
 
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 
