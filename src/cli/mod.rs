@@ -1,14 +1,17 @@
 //! The command line: one file a command. Exit codes as in [`Exit`].
 
 mod arguments;
+mod checkpoints;
 mod exit;
 mod formats;
 mod input;
 mod inspect;
 mod job;
 mod log;
+mod merge;
 mod progress;
 mod render;
+mod results;
 mod signals;
 mod validate;
 
@@ -38,6 +41,8 @@ struct Cli {
 enum Command {
     /// Render a scene or asset to an OpenEXR image and a PNG preview
     Render(Box<render::Args>),
+    /// Put together the shards of a render, or make the image of a checkpoint
+    Merge(merge::Args),
     /// Show what a file holds: hierarchy, counts, materials, lights, cameras, textures, warnings
     Inspect(inspect::Args),
     /// Check that a file is fit to render, without rendering
@@ -58,6 +63,7 @@ pub fn run() -> ExitCode {
     };
     let exit = match cli.command {
         Command::Render(args) => render::run(&args, cli.log_format),
+        Command::Merge(args) => merge::run(&args, cli.log_format),
         Command::Inspect(args) => inspect::run(&args, cli.log_format),
         Command::Validate(args) => validate::run(&args, cli.log_format),
         Command::Formats(args) => formats::run(&args),

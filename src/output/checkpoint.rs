@@ -101,7 +101,7 @@ pub fn read_checkpoint(path: &Path) -> Result<Checkpoint, CheckpointError> {
     let mut file = File::open(path)?;
     // Whatever else it is, it is not read to its end.
     let mut magic = Vec::new();
-    file.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic)?;
+    Read::take(&mut file, MAGIC.len() as u64).read_to_end(&mut magic)?;
     if magic != MAGIC {
         return Err(CheckpointError::Foreign);
     }

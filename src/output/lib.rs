@@ -3,7 +3,8 @@
 //! A [`Picture`] is plain data, rows from the top, colours linear Rec.709; [`write_exr`] stores it without loss beyond
 //! half precision, [`write_png`] stores what a person would see through a [`ToneMap`]. Every file goes through
 //! [`write_atomically`]: a reader finds the old file or the new one. Pixels that are not finite are an error and reach
-//! no file. A render so far is a [`Checkpoint`]. This crate prints nothing and knows no renderer.
+//! no file. A render so far is a [`Checkpoint`]. This crate prints nothing and knows of
+//! the renderer only its film.
 
 mod atomic;
 mod camera_matrices;

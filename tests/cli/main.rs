@@ -6,6 +6,7 @@ mod bench;
 mod commands;
 mod exits;
 mod images;
+mod resume;
 mod set;
 #[cfg(unix)]
 mod signals;
