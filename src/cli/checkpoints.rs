@@ -39,7 +39,9 @@ impl Checkpoints {
 
     /// The image of a shard that no option names: beside its part, for other shards may render the same scene here.
     pub fn shard_image(&self) -> Option<PathBuf> {
-        self.shard.and(self.path()).map(|path| path.with_extension("exr"))
+        let mut name = self.shard.and(self.path())?.as_os_str().to_owned();
+        name.push(".exr");
+        Some(name.into())
     }
 
     /// Checks that a shard has a file, and every file a name of its own.
