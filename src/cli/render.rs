@@ -179,9 +179,12 @@ struct Ready {
     features: OnceCell<Vec<Features>>,
 }
 
+/// A film to go on with, and the time it took.
+type Done = (Film, Duration);
+
 impl Ready {
-    /// With the film to go on with and the time it took, if there is one.
-    fn new(args: &Args, log: Format) -> Result<(Self, Option<(Film, Duration)>), Vec<Diagnostic>> {
+    /// With what to go on with, if there is something.
+    fn new(args: &Args, log: Format) -> Result<(Self, Option<Done>), Vec<Diagnostic>> {
         let path = &args.input.file;
         let saved = args.checkpoints.open().map_err(|d| vec![d])?;
         let loaded = args.input.load(args.size)?;
