@@ -111,7 +111,7 @@ fn a_wrong_factor_shows() {
         ("without the samplers' densities", &Window, |_, _, y, aux| -y.density(aux.stem, aux.added).ln()),
         ("without the camera's density", &Lens, |_, _, y, _| -y.nodes[y.edges()].to_light.ln()),
         ("without importance", &Caustic, |_, _, y, _| y.nodes[y.edges()].to_light.ln()),
-        ("without the step into the chain", &MultiChain, |_, _, y, aux| -y.nodes[aux.stem].edge.falloff.ln()),
+        ("without the contribution", &MultiChain, |_, _, y, _| y.scalar().ln()),
     ];
     for (what, inner, error) in variants {
         let broken = Broken { inner, error };
