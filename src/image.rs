@@ -5,26 +5,24 @@ use std::{
     time::SystemTime,
 };
 
-use ajar_integrators::{
-    Report, Settings,
-    features::{Features, features},
-};
+use ajar_integrators::{Report, Settings, features::Features};
 use ajar_output::{
     BlockVariances, CameraMatrices, Channel, Layer, Metadata, OutputError, Picture, Precision, ToneMap,
     write_atomically, write_exr, write_png,
 };
 use ajar_render::{
-    World,
     film::{BLOCK_SIDES, Film},
     math::Rgb,
 };
 use ajar_scene::{Camera, Cause, Diagnostic};
 use glam::DAffine3;
+use serde::{Deserialize, Serialize};
 
-use crate::session::Status;
+use crate::{session::Status, shard::Shard};
 
 /// An auxiliary layer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Aov {
     /// Reflectance at the first surface.
     Albedo,
@@ -80,6 +78,13 @@ pub struct Destination {
     pub exr: PathBuf,
     /// The preview.
     pub png: PathBuf,
+    /// Its form.
+    pub form: Form,
+}
+
+/// What is written of a film.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Form {
     /// Tone map of the preview.
     pub tone_map: ToneMap,
     /// Exposure of the preview, stops.
@@ -92,16 +97,20 @@ pub struct Destination {
 
 /// A finished render and what it came from.
 pub struct Run<'a> {
-    /// What was rendered.
-    pub world: &'a World,
     /// Camera and its place.
     pub camera: &'a (Camera, DAffine3),
+    /// Full frame, pixels.
+    pub size: [u32; 2],
+    /// First hits of the pixels rendered.
+    pub features: &'a [Features],
     /// Name of the integrator.
     pub integrator: &'a str,
     /// Its settings.
     pub settings: &'a Settings,
     /// The film.
     pub film: &'a Film,
+    /// Which rounds it is of.
+    pub shard: Shard,
     /// How far it is.
     pub status: &'a Status,
     /// Whether a stop rule ended the render.
@@ -117,10 +126,10 @@ pub struct Run<'a> {
 /// # Errors
 /// A file cannot be written, or pixels are not finite.
 pub fn write(run: &Run<'_>, to: &Destination) -> Result<Vec<Diagnostic>, OutputError> {
-    let first_hits = features(run.world, run.settings.window);
+    let (first_hits, form) = (run.features, &to.form);
     let beauty = beauty(run);
     let window = run.settings.window;
-    let precision = if to.float { Precision::Float } else { Precision::Half };
+    let precision = if form.float { Precision::Float } else { Precision::Half };
     let mut layers = vec![layer(
         "",
         precision,
@@ -131,17 +140,17 @@ pub fn write(run: &Run<'_>, to: &Destination) -> Result<Vec<Diagnostic>, OutputE
         },
         window.pixels(),
     )];
-    layers.extend(to.aovs.iter().map(|aov| aov_layer(*aov, run, &first_hits, precision)));
+    layers.extend(form.aovs.iter().map(|aov| aov_layer(*aov, run, first_hits, precision)));
     let picture = Picture {
         width: window.width(),
         height: window.height(),
         offset: (window.x0 as i32, window.y0 as i32),
-        full_size: (run.world.camera.width, run.world.camera.height),
+        full_size: run.size.into(),
         layers,
         metadata: metadata(run),
     };
     let widened = write_exr(&to.exr, &picture)?;
-    write_png(&to.png, &beauty, None, window.width(), window.height(), to.tone_map, to.exposure as f32)?;
+    write_png(&to.png, &beauty, None, window.width(), window.height(), form.tone_map, form.exposure as f32)?;
     let mut notes: Vec<_> = widened
         .iter()
         .map(|w| {
@@ -163,7 +172,7 @@ pub fn write(run: &Run<'_>, to: &Destination) -> Result<Vec<Diagnostic>, OutputE
 
 /// Interleaved RGB with the camera's exposure.
 fn beauty(run: &Run<'_>) -> Vec<f32> {
-    let exposure = run.world.camera.exposure;
+    let exposure = run.exposure();
     (0..run.settings.window.pixels())
         .flat_map(|p| (run.film.mean(p) * exposure).as_vec3().to_array())
         .collect()
@@ -205,7 +214,7 @@ fn aov_layer(aov: Aov, run: &Run<'_>, hits: &[Features], color: Precision) -> La
         Aov::MaterialId => ids("materialId", |f| f.material, hits),
         Aov::ObjectId => ids("objectId", |f| f.object, hits),
         Aov::Variance => {
-            let exposure = run.world.camera.exposure;
+            let exposure = run.exposure();
             let variance = |p: usize| {
                 let v = run.film.variance_of_mean(p) * exposure * exposure;
                 // One round says nothing about its error; the file says it with the largest number.
@@ -217,9 +226,9 @@ fn aov_layer(aov: Aov, run: &Run<'_>, hits: &[Features], color: Precision) -> La
 }
 
 fn metadata(run: &Run<'_>) -> Metadata {
-    let (status, camera) = (run.status, &run.world.camera);
+    let (status, [width, height]) = (run.status, run.size);
     Metadata {
-        camera: Some(CameraMatrices::new(&run.camera.0, &run.camera.1, camera.width, camera.height)),
+        camera: Some(CameraMatrices::new(&run.camera.0, &run.camera.1, width, height)),
         captured: Some(SystemTime::now()),
         render_seconds: status.elapsed.as_secs_f64(),
         samples_per_pixel: status.samples.min(u32::MAX.into()) as u32,
@@ -229,12 +238,17 @@ fn metadata(run: &Run<'_>) -> Metadata {
         scene_hash: run.scene_hash.into(),
         noise: status.noise.map(|n| n.typical),
         complete: run.complete,
-        shard: None,
+        shard: (!run.shard.is_whole()).then_some((run.shard.index, run.shard.count)),
         block_variances: block_variances(run),
     }
 }
 
 impl Run<'_> {
+    /// What the camera multiplies the film by.
+    fn exposure(&self) -> f64 {
+        self.camera.0.exposure.into()
+    }
+
     /// Numbers about the render.
     pub fn stats(&self) -> serde_json::Value {
         let status = self.status;
@@ -258,7 +272,7 @@ impl Run<'_> {
 
 /// Errors of areas, for those who compare images; nothing where one round says nothing about its error.
 fn block_variances(run: &Run<'_>) -> Vec<BlockVariances> {
-    let exposure = run.world.camera.exposure;
+    let exposure = run.exposure();
     let sides = BLOCK_SIDES.iter().map(|side| Some(*side as u32)).chain([None]);
     let level = |(level, side)| {
         let variances = run.film.block_variances(level)?;

@@ -1,6 +1,9 @@
 //! The program: from the command line to files. The rooms below it are libraries: `ajar-scene`, `ajar-importers`,
 //! `ajar-render`, `ajar-integrators`, `ajar-output`.
 
+pub mod checkpoint;
 pub mod cli;
 pub mod image;
+pub mod merge;
 pub mod session;
+pub mod shard;

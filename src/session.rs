@@ -17,6 +17,8 @@ use ajar_scene::{
 };
 use glam::DAffine3;
 
+use crate::shard::Shard;
+
 /// A loaded file: the scene and what the file says about rendering it.
 #[derive(Debug)]
 pub struct Loaded {
@@ -119,7 +121,7 @@ pub struct Status {
     pub rounds: u64,
     /// Eye samples a pixel.
     pub samples: u64,
-    /// Time since the first round began.
+    /// Time since the first round began, all runs of a resumed render together.
     pub elapsed: Duration,
     /// Noise as of the last look at it.
     pub noise: Option<Noise>,
@@ -138,6 +140,15 @@ pub struct Rendered {
     pub report: Report,
 }
 
+/// Where a render begins.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// Which rounds it makes.
+    pub shard: Shard,
+    /// Those it has already, and the time they took.
+    pub done: Option<(Film, Duration)>,
+}
+
 /// Renders rounds until a rule holds or `cancel` is raised; the round in progress is then dropped. `each_round` sees the
 /// film after every round.
 pub fn render(
@@ -145,37 +156,42 @@ pub fn render(
     integrator: &dyn Integrator,
     settings: &Settings,
     rules: &StopRules,
+    start: Start,
     cancel: &AtomicBool,
     mut each_round: impl FnMut(&Film, &Status),
 ) -> Rendered {
     let began = Instant::now();
-    let brightness = ajar_integrators::brightness(world, settings.max_depth);
     let window = settings.window;
-    let mut film = Film::new(window.pixels(), brightness).with_blocks(window.width() as usize);
+    let (mut film, before) = start.done.unwrap_or_else(|| {
+        let brightness = ajar_integrators::brightness(world, settings.max_depth);
+        (Film::new(window.pixels(), brightness).with_blocks(window.width() as usize), Duration::ZERO)
+    });
     let prepared = integrator.prepare(Context { world, settings, cancel });
-    let mut status = Status { rounds: 0, samples: 0, elapsed: Duration::ZERO, noise: None };
+    let mut status = look(&film, settings, before, None);
     let reason = loop {
+        if let Some(reason) = rules.check(status.rounds, status.elapsed, status.noise) {
+            break Some(reason);
+        }
+        let Some(index) = start.shard.round(film.rounds()) else { break Some(Reason::Rounds) };
         let round = film.round();
-        let index = film.rounds() as u32;
         prepared.render(index, &round);
         if cancel.load(Ordering::Relaxed) {
             break None;
         }
         film.merge(&round, prepared.scale());
-        status.rounds = film.rounds();
-        status.samples = status.rounds * u64::from(settings.samples_per_round);
-        status.elapsed = began.elapsed();
-        if is_noise_check(status.rounds) {
-            status.noise = noise(&film, settings.window);
-        }
+        status = look(&film, settings, before + began.elapsed(), status.noise);
         each_round(&film, &status);
-        if let Some(reason) = rules.check(status.rounds, status.elapsed, status.noise) {
-            break Some(reason);
-        }
     };
-    status.noise = noise(&film, settings.window);
-    status.elapsed = began.elapsed();
+    status.noise = noise(&film, window);
+    status.elapsed = before + began.elapsed();
     Rendered { film, status, reason, report: prepared.report() }
+}
+
+/// How far a film is; its noise stays as it was `last` where it is not due.
+fn look(film: &Film, settings: &Settings, elapsed: Duration, last: Option<Noise>) -> Status {
+    let rounds = film.rounds();
+    let noise = if is_noise_check(rounds) { noise(film, settings.window) } else { last };
+    Status { rounds, samples: rounds * u64::from(settings.samples_per_round), elapsed, noise }
 }
 
 /// Where results go: the EXR, and the PNG beside it.

@@ -8,8 +8,10 @@ use ajar_scene::{Cause, Diagnostic, OutputSettings, RenderSettings};
 
 use super::render::Args;
 use crate::{
-    image::{Aov, Destination},
+    checkpoint::Saved,
+    image::{Aov, Destination, Form},
     session::{self, DEFAULT_SIZE, Loaded},
+    shard::Shard,
 };
 
 /// Samples a pixel where no stop rule is given.
@@ -25,16 +27,18 @@ pub(super) struct Job {
     /// Full frame, pixels.
     pub size: [u32; 2],
     pub settings: Settings,
+    pub shard: Shard,
+    /// When to stop; for a shard, in its own rounds.
     pub rules: StopRules,
     pub destination: Destination,
 }
 
 impl Job {
-    /// Puts together what is asked for.
+    /// Puts together what is asked for. A render that goes on keeps the rounds of `saved`.
     ///
     /// # Errors
     /// It cannot be done; of the cause [`Cause::Usage`].
-    pub fn new(args: &Args, loaded: &Loaded) -> Result<Self, Diagnostic> {
+    pub fn new(args: &Args, loaded: &Loaded, saved: Option<&Saved>) -> Result<Self, Diagnostic> {
         let (render, output) = (&loaded.file.render, &loaded.file.output);
         let name = args.integrator.as_deref().or(render.integrator.as_deref()).unwrap_or("ajar");
         let integrator = find_integrator(name)?;
@@ -44,11 +48,17 @@ impl Job {
             let most = integrator.max_depth();
             return Err(wrong(format!("max_depth {max_depth} is more than {name} can build, {most}")));
         }
-        let (rules, samples_per_round) = stop_rules(args, render, integrator.samples_per_round());
+        let kept = saved.map(|saved| saved.subject.samples_per_round);
+        let (rules, samples_per_round) = stop_rules(args, render, integrator.samples_per_round(), kept);
+        let shard = args.checkpoints.shard.unwrap_or(Shard::WHOLE);
+        let rules = if shard.is_whole() { rules } else { share(rules, shard)? };
         let seed = args.seed.or(render.seed).unwrap_or(0);
         let window = window(args, render, size)?;
-        let settings = Settings { seed, max_depth, samples_per_round, window, mutations: mutations(render)? };
-        Ok(Self { integrator, size, settings, rules, destination: destination(args, output)? })
+        let mutations = mutations(render)?;
+        let settings = Settings { seed, max_depth, samples_per_round, window, mutations };
+        let destination = destination(args, output)?;
+        args.checkpoints.check(&destination)?;
+        Ok(Self { integrator, size, settings, shard, rules, destination })
     }
 
     /// What `--dry-run` says.
@@ -92,8 +102,14 @@ fn mutations(render: &RenderSettings) -> Result<BTreeMap<String, f64>, Diagnosti
     Ok(render.mutations.clone())
 }
 
-/// Stop rules given on the command line replace all those of the file.
-fn stop_rules(args: &Args, render: &RenderSettings, samples_per_round: u32) -> (StopRules, u32) {
+/// Stop rules given on the command line replace all those of the file. Rounds have as many samples as those that are
+/// `kept`, otherwise as suits the number asked for, otherwise as suits the integrator.
+fn stop_rules(
+    args: &Args,
+    render: &RenderSettings,
+    samples_per_round: u32,
+    kept: Option<u32>,
+) -> (StopRules, u32) {
     let given = args.spp.is_some() || args.rounds.is_some() || args.time.is_some() || args.noise.is_some();
     let (mut spp, rounds, time, noise) = if given {
         (args.spp, args.rounds, args.time, args.noise)
@@ -103,10 +119,24 @@ fn stop_rules(args: &Args, render: &RenderSettings, samples_per_round: u32) -> (
     if spp.is_none() && rounds.is_none() && time.is_none() && noise.is_none() {
         spp = Some(DEFAULT_SPP);
     }
-    let samples = spp.map_or(samples_per_round, |n| floor_power_of_two(n / ROUNDS_OF_SPP).min(256));
+    let fitting = |n| floor_power_of_two(n / ROUNDS_OF_SPP).min(256);
+    let samples = kept.or(spp.map(fitting)).unwrap_or(samples_per_round);
     let by_spp = spp.map(|n| u64::from(n.div_ceil(samples)));
     let rounds = [rounds, by_spp].into_iter().flatten().min();
     (StopRules { rounds, time, noise }, samples)
+}
+
+/// The rules for a shard of a render of these rules.
+fn share(rules: StopRules, shard: Shard) -> Result<StopRules, Diagnostic> {
+    let (Some(total), None, None) = (rules.rounds, rules.time, rules.noise) else {
+        return Err(wrong("shards share a number of rounds, which time and noise do not tell before")
+            .hint("stop by --rounds or --spp alone"));
+    };
+    match shard.share(total) {
+        0 => Err(wrong(format!("shard {shard} has nothing to do: there are only {total} rounds"))
+            .hint("ask for more rounds or fewer shards")),
+        rounds => Ok(StopRules { rounds: Some(rounds), ..rules }),
+    }
 }
 
 fn floor_power_of_two(n: u32) -> u32 {
@@ -130,21 +160,21 @@ fn window(args: &Args, render: &RenderSettings, [w, h]: [u32; 2]) -> Result<Wind
 }
 
 fn destination(args: &Args, output: &OutputSettings) -> Result<Destination, Diagnostic> {
+    let named = args.output.clone().or_else(|| args.checkpoints.shard_image());
     let merged = OutputSettings {
-        path: args.output.clone().or_else(|| output.path.clone()),
         // A new name on the command line takes its preview along.
-        png: if args.output.is_some() { None } else { output.png.clone() },
+        png: if named.is_some() { None } else { output.png.clone() },
+        path: named.or_else(|| output.path.clone()),
         ..output.clone()
     };
     let (exr, png) = session::output_paths(&args.input.file, &merged);
     let tone_map = args.tone_map.as_deref().or(output.tone_map.as_deref()).unwrap_or("agx");
     let names = args.aov.clone().or_else(|| output.aov.clone()).unwrap_or_default();
-    Ok(Destination {
-        exr,
-        png,
+    let form = Form {
         tone_map: tone_map.parse::<ToneMap>().map_err(|e| wrong(e.to_string()))?,
         exposure: args.exposure.or(output.exposure).unwrap_or(0.0),
         aovs: names.iter().map(|name| Aov::parse(name)).collect::<Result<_, _>>()?,
         float: args.float || output.float.unwrap_or(false),
-    })
+    };
+    Ok(Destination { exr, png, form })
 }

@@ -1,6 +1,7 @@
 //! The command line: one file a command. Exit codes as in [`Exit`].
 
 mod arguments;
+mod checkpoints;
 mod diff;
 mod exit;
 mod formats;
@@ -8,8 +9,10 @@ mod input;
 mod inspect;
 mod job;
 mod log;
+mod merge;
 mod progress;
 mod render;
+mod results;
 mod signals;
 mod validate;
 
@@ -39,6 +42,8 @@ struct Cli {
 enum Command {
     /// Render a scene or asset to an OpenEXR image and a PNG preview
     Render(Box<render::Args>),
+    /// Put together the shards of a render, or make the image of a checkpoint
+    Merge(merge::Args),
     /// Show what a file holds: hierarchy, counts, materials, lights, cameras, textures, warnings
     Inspect(inspect::Args),
     /// Check that a file is fit to render, without rendering
@@ -61,6 +66,7 @@ pub fn run() -> ExitCode {
     };
     let exit = match cli.command {
         Command::Render(args) => render::run(&args, cli.log_format),
+        Command::Merge(args) => merge::run(&args, cli.log_format),
         Command::Inspect(args) => inspect::run(&args, cli.log_format),
         Command::Validate(args) => validate::run(&args, cli.log_format),
         Command::Formats(args) => formats::run(&args),

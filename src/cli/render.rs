@@ -1,29 +1,31 @@
 //! `ajar render`.
 
-use std::{
-    path::{Path, PathBuf},
-    time::Duration,
-};
+use std::{cell::OnceCell, path::PathBuf, time::Duration};
 
-use ajar_integrators::Report;
+use ajar_integrators::{
+    Report,
+    features::{Features, features as first_hits},
+};
 use ajar_render::{World, film::Film};
 use ajar_scene::{Camera, Cause, Diagnostic, Severity, parse_duration, parse_percent};
 use glam::DAffine3;
-use serde_json::json;
 
 use super::{
     Exit,
     arguments::{parse_bounds, parse_crop, parse_size},
+    checkpoints::Checkpoints,
     input::Input,
     job::Job,
     log::Format,
     print,
-    progress::{Progress, duration},
+    progress::Progress,
+    results,
     signals::Signals,
 };
 use crate::{
-    image::{self, Destination, Run},
-    session::{self, Loaded, Status},
+    checkpoint::Subject,
+    image::{Destination, Run},
+    session::{self, Loaded, Start, Status},
 };
 
 #[derive(Debug, clap::Args)]
@@ -83,6 +85,8 @@ pub(super) struct Args {
     /// Write colours as 32-bit floats instead of halves
     #[arg(long)]
     pub float: bool,
+    #[command(flatten)]
+    pub checkpoints: Checkpoints,
     /// Load and prepare, say what would be rendered, write nothing
     #[arg(long)]
     dry_run: bool,
@@ -121,20 +125,30 @@ fn execute(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
         pool.map_err(|e| fail(Cause::Resource, format!("cannot start {threads} threads: {e}")))?;
     }
     let signals = Signals::new().map_err(|e| fail(Cause::System, format!("cannot handle signals: {e}")))?;
-    let ready = Ready::new(args, log)?;
+    let (ready, done) = Ready::new(args, log)?;
     if args.dry_run {
         print(&ready.job.describe());
         return Ok(Exit::Ok);
     }
-    let Job { integrator, settings, rules, destination, .. } = &ready.job;
-    let mut progress = Progress::new(args.quiet, log);
+    let Job { integrator, settings, shard, rules, destination, .. } = &ready.job;
+    let (mut progress, mut saving) = (Progress::new(args.quiet, log), args.checkpoints.saving());
     let each_round = |film: &Film, status: &Status| {
         progress.update(status, rules);
+        let report = Report::default();
+        let run = || ready.run(film, status, &report, false);
         if signals.snapshot_asked() {
-            snapshot(&ready.run(film, status, &Report::default(), false), destination, args, log);
+            snapshot(&run(), destination, args, log);
+        }
+        if saving.is_due()
+            && let Err(error) = saving.save(&run(), &destination.form)
+        {
+            // A disk that is full now may have room at the end.
+            log.messages(&[Diagnostic { severity: Severity::Warning, ..error }], args.least());
         }
     };
-    let rendered = session::render(&ready.world, *integrator, settings, rules, signals.stop(), each_round);
+    let start = Start { shard: *shard, done };
+    let rendered =
+        session::render(&ready.world, *integrator, settings, rules, start, signals.stop(), each_round);
     progress.finish();
     if rendered.status.rounds == 0 {
         let nothing = Diagnostic::error("interrupted before the first round was done; nothing written");
@@ -143,10 +157,13 @@ fn execute(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
     }
     let complete = rendered.reason.is_some();
     let run = ready.run(&rendered.film, &rendered.status, &rendered.report, complete);
-    let notes = write(&run, destination, args).map_err(|d| vec![d])?;
+    // If one of the files cannot be written, the other still is.
+    let saved = saving.save(&run, &destination.form);
+    let written = results::write(&run, destination, args.stats_json.as_deref());
+    let notes = saved.and(written).map_err(|d| vec![d])?;
     if !args.quiet {
         log.messages(&notes, Severity::Note);
-        print(&summary(&run, destination, log));
+        print(&results::summary(&run, destination, args.checkpoints.path(), log));
     }
     Ok(if complete { Exit::Ok } else { Exit::Interrupted })
 }
@@ -158,28 +175,51 @@ struct Ready {
     camera: (Camera, DAffine3),
     scene_hash: String,
     job: Job,
+    /// First hits, found when something is written.
+    features: OnceCell<Vec<Features>>,
 }
 
+/// A film to go on with, and the time it took.
+type Done = (Film, Duration);
+
 impl Ready {
-    fn new(args: &Args, log: Format) -> Result<Self, Vec<Diagnostic>> {
+    /// With what to go on with, if there is something.
+    fn new(args: &Args, log: Format) -> Result<(Self, Option<Done>), Vec<Diagnostic>> {
         let path = &args.input.file;
+        let saved = args.checkpoints.open().map_err(|d| vec![d])?;
         let loaded = args.input.load(args.size)?;
-        let job = Job::new(args, &loaded).map_err(|d| vec![d])?;
+        let job = Job::new(args, &loaded, saved.as_ref()).map_err(|d| vec![d])?;
         let Loaded { file, hash: scene_hash } = loaded;
         log.messages(&file.diagnostics, args.least());
         let name = args.camera.as_deref().or(file.render.camera.as_deref());
-        let camera = session::choose_camera(&file.scene, name).map_err(|d| vec![d])?;
-        let lens = (file.scene.cameras[camera.0].clone(), camera.1);
-        let (world, warnings) = session::prepare_world(file.scene, camera, job.size, args.input.memory_limit)
+        let id = session::choose_camera(&file.scene, name).map_err(|d| vec![d])?;
+        let camera = (file.scene.cameras[id.0].clone(), id.1);
+        let subject = Subject::new(&scene_hash, &camera, job.size, job.integrator.name(), &job.settings);
+        let done = saved.map(|saved| args.checkpoints.resume(saved, &subject, job.shard)).transpose()?;
+        let (world, warnings) = session::prepare_world(file.scene, id, job.size, args.input.memory_limit)
             .map_err(|d| session::about(path, d))?;
         log.messages(&session::about(path, warnings), args.least());
-        Ok(Self { world, camera: lens, scene_hash, job })
+        Ok((Self { world, camera, scene_hash, job, features: OnceCell::new() }, done))
     }
 
     fn run<'a>(&'a self, film: &'a Film, status: &'a Status, report: &'a Report, complete: bool) -> Run<'a> {
-        let Self { world, camera, scene_hash, job } = self;
-        let (integrator, settings) = (job.integrator.name(), &job.settings);
-        Run { world, camera, integrator, settings, film, status, report, complete, scene_hash }
+        let Self { world, camera, scene_hash, job, features } = self;
+        let Job { integrator, size, ref settings, shard, .. } = *job;
+        let features = features.get_or_init(|| first_hits(world, settings.window));
+        let integrator = integrator.name();
+        Run {
+            camera,
+            size,
+            features,
+            integrator,
+            settings,
+            film,
+            shard,
+            status,
+            report,
+            complete,
+            scene_hash,
+        }
     }
 }
 
@@ -187,19 +227,9 @@ fn fail(cause: Cause, message: String) -> Vec<Diagnostic> {
     vec![Diagnostic::error(message).because(cause)]
 }
 
-/// Writes the images and the numbers; returns notes about them.
-fn write(run: &Run<'_>, to: &Destination, args: &Args) -> Result<Vec<Diagnostic>, Diagnostic> {
-    let failed = |e: ajar_output::OutputError| Diagnostic::error(e.to_string()).because(Cause::System);
-    let notes = image::write(run, to).map_err(failed)?;
-    if let Some(path) = &args.stats_json {
-        image::write_stats(run, path).map_err(failed)?;
-    }
-    Ok(notes)
-}
-
 /// Writes the image as it is so far; a disk that is full now may have room at the end.
 fn snapshot(run: &Run<'_>, to: &Destination, args: &Args, log: Format) {
-    let said = match write(run, to, args) {
+    let said = match results::write(run, to, args.stats_json.as_deref()) {
         Ok(_) => Diagnostic::note(format!("snapshot after {} samples a pixel", run.status.samples))
             .in_file(&to.exr),
         Err(error) => Diagnostic { severity: Severity::Warning, ..error },
@@ -207,23 +237,4 @@ fn snapshot(run: &Run<'_>, to: &Destination, args: &Args, log: Format) {
     if !args.quiet {
         log.messages(&[said], Severity::Note);
     }
-}
-
-fn summary(run: &Run<'_>, to: &Destination, log: Format) -> String {
-    let (exr, png) = (shown(&to.exr), shown(&to.png));
-    if log == Format::Json {
-        return json!({ "type": "result", "exr": exr, "png": png, "stats": run.stats() }).to_string();
-    }
-    let status = run.status;
-    let noise = status.noise.map_or(String::new(), |n| {
-        format!(", noise {:.1} % (worst tile {:.0} %)", n.typical * 100.0, n.worst_tile * 100.0)
-    });
-    let partial = if run.complete { "" } else { " (interrupted)" };
-    let (samples, time) = (status.samples, duration(status.elapsed));
-    let details: String = run.report.lines.iter().map(|line| format!("\n{line}")).collect();
-    format!("{samples} samples a pixel in {time}{noise}{partial}{details}\nwrote {exr}\nwrote {png}")
-}
-
-fn shown(path: &Path) -> String {
-    path.canonicalize().unwrap_or_else(|_| path.to_path_buf()).display().to_string()
 }

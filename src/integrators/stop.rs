@@ -27,12 +27,12 @@ pub enum Reason {
 }
 
 impl StopRules {
-    /// Whether the render should stop after `rounds` rounds.
+    /// Whether the render should stop after `rounds` rounds; however short the time, one is made.
     pub fn check(&self, rounds: u64, elapsed: Duration, noise: Option<Noise>) -> Option<Reason> {
         if self.rounds.is_some_and(|limit| rounds >= limit) {
             return Some(Reason::Rounds);
         }
-        if self.time.is_some_and(|limit| elapsed >= limit) {
+        if rounds > 0 && self.time.is_some_and(|limit| elapsed >= limit) {
             return Some(Reason::Time);
         }
         let quiet = |limit: f64, noise: Noise| noise.typical <= limit && noise.worst_tile <= 3.0 * limit;
@@ -70,6 +70,7 @@ mod tests {
         assert_eq!(rules.check(17, second, noise(0.01, 0.01)), None);
         assert_eq!(rules.check(16, second, noise(0.02, 0.05)), Some(Reason::Noise));
         assert_eq!(rules.check(17, 10 * second, None), Some(Reason::Time));
+        assert_eq!(rules.check(0, 10 * second, None), None);
         assert_eq!(rules.check(100, second, None), Some(Reason::Rounds));
     }
 }

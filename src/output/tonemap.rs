@@ -5,12 +5,15 @@
 
 use std::{fmt, str::FromStr};
 
+use serde::{Deserialize, Serialize};
+
 mod aces;
 mod agx;
 mod neutral;
 
 /// A way to show more light than a display has.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ToneMap {
     /// Troy Sobotka's AgX: filmic contrast, bright saturated colours fade to white as on film.
     #[default]

@@ -7,8 +7,10 @@
 //! each fills the gaps of the others, so the mean is closer to the truth than their spread says.
 
 mod blocks;
+mod state;
 
 pub use blocks::BLOCK_SIDES;
+pub use state::FilmState;
 
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 

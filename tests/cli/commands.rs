@@ -7,9 +7,15 @@ use crate::bench::Bench;
 #[test]
 fn help_names_the_exit_codes_and_fits_the_screen() {
     let bench = Bench::new();
-    for arguments in
-        ["--help", "render --help", "inspect --help", "validate --help", "formats --help", "render -h"]
-    {
+    for arguments in [
+        "--help",
+        "render --help",
+        "inspect --help",
+        "validate --help",
+        "formats --help",
+        "merge --help",
+        "render -h",
+    ] {
         let run = bench.run(arguments).exits(0);
         assert!(run.out.contains("Exit codes: 0 ok"), "{arguments}:\n{}", run.out);
         assert!(run.out.contains("5 interrupted"), "{arguments}");

@@ -7,6 +7,7 @@ mod commands;
 mod exits;
 mod images;
 mod messages;
+mod resume;
 mod set;
 #[cfg(unix)]
 mod signals;

@@ -8,7 +8,7 @@ use std::{
 
 use serde_json::Value;
 
-use crate::bench::Bench;
+use crate::{bench::Bench, resume::content};
 
 /// A render that takes ten minutes if nobody stops it, and its messages.
 struct Render {
@@ -100,4 +100,32 @@ fn a_snapshot_is_written_and_the_render_goes_on() {
     render.signal("-INT");
     assert_eq!(render.end(), Some(5));
     assert!(stats(&bench)["rounds"].as_u64() > snapshot["rounds"].as_u64());
+}
+
+#[test]
+fn an_interrupted_render_resumes_where_it_was() {
+    for signal in ["-INT", "-TERM"] {
+        let bench = Bench::new();
+        let mut render = Render::start(&bench, "--stats-json stats.json --checkpoint saved");
+        render.wait_for("round ");
+        render.signal(signal);
+        assert_eq!(render.end(), Some(5), "{signal}");
+        let rounds = stats(&bench)["rounds"].as_u64().unwrap() + 2;
+        let again = format!("render kitchen/scene.toml --rounds {rounds}");
+        bench.run(&format!("{again} -o resumed.exr --resume saved")).exits(0);
+        bench.run(&format!("{again} -o whole.exr")).exits(0);
+        assert!(content(&bench, "resumed.exr") == content(&bench, "whole.exr"), "{signal}");
+    }
+}
+
+#[test]
+fn a_killed_render_was_saved_in_time() {
+    let bench = Bench::new();
+    let mut render = Render::start(&bench, "--checkpoint saved --checkpoint-interval 1s");
+    render.wait_for("round ");
+    render.signal("-KILL");
+    assert_eq!(render.end(), None);
+    bench.run("merge saved -o saved.exr").exits(0);
+    let image = content(&bench, "saved.exr");
+    assert!(image.attributes["ajar:complete"].contains('0') && bench.image("saved.exr").mean() > 0.01);
 }

@@ -8,8 +8,8 @@ FOLDER holds one scene twice, as `scene.glb` for Ajar and as `scene.json` with O
 image `reference.exr`. The JSON names `camera` (origin, target, up, fov: the vertical one in degrees, width, height),
 `max_depth`, `materials` (of type diffuse, emitter, dielectric or conductor) and `meshes` (name, obj, material).
 
-Each renderer gets the same CPU seconds, loading and compiling included, and the relative mean squared error of its image
-is printed: the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels. Mitsuba's LLVM variant wants a recent LLVM
+Each renderer gets the same CPU seconds, loading and compiling included; the relative mean squared error of its image is
+printed: the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels. Mitsuba's LLVM variant wants a recent LLVM
 (environment variable DRJIT_LIBLLVM_PATH).
 """
 

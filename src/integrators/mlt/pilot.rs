@@ -15,13 +15,16 @@ use crate::{Context, Settings};
 /// Mutations a pixel that find the brightness, and then what they would cost and gain.
 const BRIGHTNESS_MUTATIONS: u64 = 12;
 const GAIN_MUTATIONS: u64 = 4;
-/// Eye paths a pixel, twice, that look for what the chains missed.
+/// Most mutations of either pilot: large images are learned more coarsely.
+const MOST_MUTATIONS: u64 = 1 << 22;
+/// Mutations that the square of pixels to average over should hold.
+const AVERAGED: f64 = 300.0;
+/// Eye paths a pixel, twice, that look for what the chains missed; one in large images.
 const WALKS: u32 = 2;
+const LARGE: usize = 1 << 19;
 /// Round numbers of the pilots.
 const BRIGHTNESS_ROUND: u32 = u32::MAX - 1;
 const GAIN_ROUND: u32 = u32::MAX - 2;
-/// Pixels on each side over which the brightness is averaged.
-const REACH: usize = 2;
 /// Least brightness, relative to the mean.
 const FLOOR: f64 = 0.02;
 /// Steps that a chain needs to forget a pixel: measured between 4 in easy scenes and 47 behind a door.
@@ -58,21 +61,26 @@ pub fn plan(cx: Context<'_>, always: bool) -> Plan {
 fn brightness(chains: &PlainChains<'_>) -> Vec<f64> {
     let space = &chains.space;
     let pixels = space.window.pixels();
-    let mut film = Film::new(pixels, 1.0);
+    let mut film = Film::new(pixels, crate::brightness(space.world, space.max_depth));
     let round = film.round();
-    chains.render(BRIGHTNESS_ROUND, BRIGHTNESS_MUTATIONS * pixels as u64, |path, aim, share| {
+    let mutations = (BRIGHTNESS_MUTATIONS * pixels as u64).min(MOST_MUTATIONS);
+    chains.render(BRIGHTNESS_ROUND, mutations, |path, aim, share| {
         if let Some(pixel) = space.pixel(path.raster) {
             round.add(pixel, aim.deposit * (share * pixels as f64));
         }
     });
     film.merge(&round, 1.0);
     let width = space.window.width() as usize;
+    // Pixels on each side over which to average.
+    let side = (AVERAGED * pixels as f64 / mutations as f64).sqrt();
+    let reach = ((side - 1.0) / 2.0).ceil() as usize;
+    let walks = if pixels > LARGE { 1 } else { WALKS };
     let found: Vec<f64> = (0..pixels).map(|pixel| scalar(film.mean(pixel))).collect();
     let walked = [0, 1].map(|half| {
         // Other samples than those of the image, which must not depend on its own brightness.
         let seed = !chains.cx.settings.seed;
-        let settings = Settings { seed, samples_per_round: WALKS, ..chains.cx.settings.clone() };
-        smooth(&base::means(space, &settings, half), width)
+        let settings = Settings { seed, samples_per_round: walks, ..chains.cx.settings.clone() };
+        smooth(&base::means(space, &settings, half), width, reach)
     });
     let mean = found.iter().sum::<f64>() / pixels as f64;
     if mean <= 0.0 {
@@ -81,13 +89,17 @@ fn brightness(chains: &PlainChains<'_>) -> Vec<f64> {
     // Chains may have missed what walks find easily. A brightness that is too low costs much, one that is too high
     // little; what only one half of the walks found is a firefly.
     let walked = walked[0].iter().zip(&walked[1]).map(|(a, b)| a.min(*b));
-    smooth(&found, width).iter().zip(walked).map(|(b, walked)| b.max(walked).max(FLOOR * mean)).collect()
+    smooth(&found, width, reach)
+        .iter()
+        .zip(walked)
+        .map(|(b, walked)| b.max(walked).max(FLOOR * mean))
+        .collect()
 }
 
 /// Mean over the square of pixels around each.
-fn smooth(values: &[f64], width: usize) -> Vec<f64> {
+fn smooth(values: &[f64], width: usize, reach: usize) -> Vec<f64> {
     let rows = values.len() / width;
-    let span = |i: usize, n: usize| i.saturating_sub(REACH)..(i + REACH + 1).min(n);
+    let span = |i: usize, n: usize| i.saturating_sub(reach)..(i + reach + 1).min(n);
     let across: Vec<f64> = (0..values.len())
         .map(|i| {
             let (row, columns) = (i / width * width, span(i % width, width));
@@ -140,21 +152,24 @@ impl Gain {
 /// tracer, however seldom it would find them itself.
 fn gain(chains: &PlainChains<'_>, split: &Split<'_>) -> Option<Gain> {
     let space = &chains.space;
-    let pixels = space.window.pixels() as f64;
     // Sums are made per row of pixels and then in order: the order of threads must not show.
     let rows = Film::new(space.window.pixels(), 1.0);
     let (paths, bases, residuals) = (rows.round(), rows.round(), rows.round());
-    let totals = chains.render(GAIN_ROUND, GAIN_MUTATIONS * pixels as u64, |path, aim, share| {
-        let Some(pixel) = space.pixel(path.raster) else { return };
-        let brightness = split.brightness[pixel];
-        let relative = scalar(aim.deposit) * share / brightness;
-        let c = base::contribution(path);
-        let left = Split::residual(c, brightness);
-        let moment = |x: f64| ajar_render::math::Rgb::splat(x.min(MOST) * relative);
-        paths.add(pixel, moment(c / brightness));
-        bases.add(pixel, moment((1.0 - left).powi(2) * if c.is_finite() { c / brightness } else { 0.0 }));
-        residuals.add(pixel, moment(left));
-    });
+    let totals = chains.render(
+        GAIN_ROUND,
+        (GAIN_MUTATIONS * space.window.pixels() as u64).min(MOST_MUTATIONS),
+        |path, aim, share| {
+            let Some(pixel) = space.pixel(path.raster) else { return };
+            let brightness = split.brightness[pixel];
+            let relative = scalar(aim.deposit) * share / brightness;
+            let c = base::contribution(path);
+            let left = Split::residual(c, brightness);
+            let moment = |x: f64| ajar_render::math::Rgb::splat(x.min(MOST) * relative);
+            paths.add(pixel, moment(c / brightness));
+            bases.add(pixel, moment((1.0 - left).powi(2) * if c.is_finite() { c / brightness } else { 0.0 }));
+            residuals.add(pixel, moment(left));
+        },
+    );
     if totals.stats.steps() == 0 {
         return None;
     }

@@ -12,9 +12,9 @@ pub const BLOCK_SIDES: [usize; 3] = [8, 16, 64];
 /// Sums over the rounds of squared block means, in the film's fixed point.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Blocks {
-    width: usize,
+    pub(super) width: usize,
     /// One list a side, three entries a block, rows from the top; last that of the whole film.
-    squares: [Vec<i128>; BLOCK_SIDES.len() + 1],
+    pub(super) squares: [Vec<i128>; BLOCK_SIDES.len() + 1],
 }
 
 impl Blocks {

@@ -104,7 +104,7 @@ fn degenerate_triangles_and_rays_meet_nothing() {
             let target = DVec3::X * rng.f64() * 3.0;
             let origin = in_cube(&mut rng);
             let ray = Ray::new(origin, (target - origin).normalize());
-            assert!(nearest(&geometry, &ray).is_none());
+            assert!(nearest(geometry, &ray).is_none());
         }
         assert_eq!(geometry.bounds(), (DVec3::ZERO, DVec3::ZERO));
     }

@@ -21,8 +21,8 @@ fn escapes(geometry: &Geometry, mesh: &MeshGeometry, to_world: DAffine3, rays: u
             _ => a.midpoint(b) - origin,
         };
         let ray = Ray::new(origin, along.normalize());
-        escaped += usize::from(nearest(&geometry, &ray).is_none());
-        escaped += usize::from(!blocked(&geometry, &ray));
+        escaped += usize::from(nearest(geometry, &ray).is_none());
+        escaped += usize::from(!blocked(geometry, &ray));
     }
     escaped
 }
