@@ -22,7 +22,7 @@ def render(target: Path, *arguments: str) -> Path:
         pytest.skip("AJAR_BIN does not name an ajar program")
     command = [binary, "render", SCENE, "--size", f"{SIZE[0]}x{SIZE[1]}", "--rounds", "16", "-o", target, "--quiet"]
     integrator = [] if "--integrator" in arguments else ["--integrator", "path"]
-    subprocess.run([*command, *integrator, *arguments], check=True, timeout=600)
+    subprocess.run([*command, *integrator, *arguments], check=True, timeout=1200)
     return target
 
 
