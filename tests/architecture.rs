@@ -27,7 +27,7 @@ const TOP: &[&str] = &[
 ];
 
 /// Folders that builds and tools make.
-const MADE: &[&str] = &["target", ".venv", ".git", "__pycache__", "out"];
+const MADE: &[&str] = &["target", ".venv", ".git", "__pycache__", "out", "ajar-artifacts"];
 
 /// Which crate may import which.
 const FLOORS: &[(&str, &[&str])] = &[
