@@ -3,12 +3,19 @@
 //! An importer reads one format and knows no renderer. A new one is a folder beside the others and a row in
 //! [`importers`].
 
+pub mod ajar;
 pub mod gltf;
 mod guard;
 pub mod obj;
+pub mod plugin;
+mod polygon;
 mod report;
 
-use std::{fs::File, io::Read, path::Path};
+use std::{
+    fs::File,
+    io::{self, Read},
+    path::Path,
+};
 
 use ajar_scene::{Diagnostic, ImportRequest, Imported, Importer};
 
@@ -17,23 +24,30 @@ const HEAD: u64 = 256;
 
 /// All importers, in the order in which they are asked.
 pub fn importers() -> &'static [&'static dyn Importer] {
-    &[&gltf::Gltf, &obj::Obj]
+    &[&ajar::Ajar, &gltf::Gltf, &obj::Obj, &plugin::PlugIns]
 }
 
-/// The importer for the file at `path`: by its extension, else by its first bytes.
+/// The importer for the file at `path`: by its extension, by what plug-ins claim, else by its first bytes.
 ///
 /// # Errors
-/// The extension is unknown and the file cannot be read or looks like no known format.
+/// The extension is unknown and the file cannot be read or looks like no known format, or a plug-in cannot be asked.
 pub fn find(path: &Path) -> Result<&'static dyn Importer, Diagnostic> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
     if let Some(importer) = importers().iter().find(|i| i.extensions().contains(&extension.as_str())) {
         return Ok(*importer);
     }
-    let mut head = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(HEAD).read_to_end(&mut head))
-        .map_err(|e| Diagnostic::error(format!("cannot be read: {e}")).in_file(path))?;
+    let head = head(path).map_err(|e| Diagnostic::error(format!("cannot be read: {e}")).in_file(path))?;
+    if plugin::claimant(path, &head)?.is_some() {
+        return Ok(&plugin::PlugIns);
+    }
     importers().iter().find(|i| i.sniff(&head)).copied().ok_or_else(|| unknown(path))
+}
+
+/// The first bytes of a file.
+fn head(path: &Path) -> io::Result<Vec<u8>> {
+    let mut head = Vec::new();
+    File::open(path)?.take(HEAD).read_to_end(&mut head)?;
+    Ok(head)
 }
 
 fn unknown(path: &Path) -> Diagnostic {

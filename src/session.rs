@@ -49,6 +49,20 @@ pub struct LoadOptions<'a> {
 /// # Errors
 /// Everything that makes it unfit to render.
 pub fn load(path: &Path, options: &LoadOptions<'_>) -> Result<Loaded, Vec<Diagnostic>> {
+    let mut file = open(path, options)?;
+    let hash = file.scene.content_hash();
+    let [width, height] = options.size.or(file.render.size).unwrap_or(DEFAULT_SIZE).map(f64::from);
+    let camera = file.scene.add_default_camera(width / height);
+    let light = file.scene.add_default_light();
+    file.diagnostics.extend(about(path, camera.into_iter().chain(light)));
+    Ok(Loaded { file, hash })
+}
+
+/// Reads and checks a file as it is.
+///
+/// # Errors
+/// Everything that makes it unfit to render.
+pub fn open(path: &Path, options: &LoadOptions<'_>) -> Result<SceneFile, Vec<Diagnostic>> {
     let memory_limit = options.memory_limit;
     let import =
         |request: &ImportRequest| ajar_importers::import(&ImportRequest { memory_limit, ..request.clone() });
@@ -64,12 +78,7 @@ pub fn load(path: &Path, options: &LoadOptions<'_>) -> Result<Loaded, Vec<Diagno
     if file.diagnostics.iter().any(|d| d.severity >= least) {
         return Err(file.diagnostics);
     }
-    let hash = file.scene.content_hash();
-    let [width, height] = options.size.or(file.render.size).unwrap_or(DEFAULT_SIZE).map(f64::from);
-    let camera = file.scene.add_default_camera(width / height);
-    let light = file.scene.add_default_light();
-    file.diagnostics.extend(about(path, camera.into_iter().chain(light)));
-    Ok(Loaded { file, hash })
+    Ok(file)
 }
 
 /// The same messages, those without file being about `path`.

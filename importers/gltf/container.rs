@@ -30,7 +30,12 @@ const KEYS: [&str; 12] = [
 pub(super) fn looks_like_gltf(head: &[u8]) -> bool {
     let text = String::from_utf8_lossy(head);
     let json = text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
-    head.starts_with(MAGIC) || json && KEYS.iter().any(|key| text.contains(key))
+    is_binary(head) || json && KEYS.iter().any(|key| text.contains(key))
+}
+
+/// Whether bytes are binary glTF.
+pub(super) fn is_binary(bytes: &[u8]) -> bool {
+    bytes.starts_with(MAGIC)
 }
 
 /// A file taken apart.
@@ -48,7 +53,7 @@ pub(super) fn split(mut file: Vec<u8>, report: &mut Report) -> Result<Container,
     if file.is_empty() {
         return Err(Diagnostic::error("the file is empty"));
     }
-    if !file.starts_with(MAGIC) {
+    if !is_binary(&file) {
         return Ok(Container { json: file, binary: None, is_binary: false });
     }
     let broken = |why: String| Diagnostic::error(format!("broken GLB container: {why}"));

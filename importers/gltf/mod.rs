@@ -94,18 +94,41 @@ struct Asset {
     buffers: buffers::Buffers,
 }
 
+impl<'a> Context<'a> {
+    fn new(request: &'a ImportRequest) -> Self {
+        Self {
+            request,
+            report: Report::default(),
+            files: vec![request.path.clone()],
+            budget: request.memory_limit,
+            opened: HashSet::new(),
+        }
+    }
+}
+
 fn read(request: &ImportRequest) -> Result<Imported, Diagnostic> {
-    let mut context = Context {
-        request,
-        report: Report::default(),
-        files: vec![request.path.clone()],
-        budget: request.memory_limit,
-        opened: HashSet::new(),
-    };
+    let mut context = Context::new(request);
     let file = uri::read_file(&request.path, &mut context, "the file").map_err(|mut error| {
         error.element = None;
         error
     })?;
+    convert(file, context)
+}
+
+/// The scene in the bytes of a GLB that a plug-in made of the file of `request`.
+///
+/// # Errors
+/// What an import of the bytes as a file would return.
+pub(crate) fn decode(bytes: Vec<u8>, request: &ImportRequest) -> Result<Imported, Diagnostic> {
+    convert(bytes, Context::new(request))
+}
+
+/// Whether the bytes are a GLB.
+pub(crate) fn is_container(bytes: &[u8]) -> bool {
+    container::is_binary(bytes)
+}
+
+fn convert(file: Vec<u8>, mut context: Context) -> Result<Imported, Diagnostic> {
     let (root, binary) = document::parse(file, &mut context.report)?;
     check::indices(&root)?;
     let parents = check::parents(&root)?;
@@ -126,7 +149,8 @@ fn read(request: &ImportRequest) -> Result<Imported, Diagnostic> {
     asset.buffers.check_unused(&mut context);
     let mut met = HashSet::new();
     context.files.retain(|path| met.insert(path.clone()));
-    Ok(Imported { scene, diagnostics: context.report.finish(&request.path), files: context.files })
+    let diagnostics = context.report.finish(&context.request.path);
+    Ok(Imported { scene, diagnostics, files: context.files, ..Imported::default() })
 }
 
 /// The item at `index`, or an error that names the element which points beyond.

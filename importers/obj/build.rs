@@ -5,11 +5,8 @@ use std::{collections::HashMap, path::Path};
 use ajar_scene::{Diagnostic, Id, Material, Mesh, Node, Scene};
 use glam::{DVec3, Vec2, Vec3};
 
-use super::{
-    geometry::{Corner, Face, Geometry, NONE, Part},
-    polygon,
-};
-use crate::report::Report;
+use super::geometry::{Corner, Face, Geometry, NONE, Part};
+use crate::{polygon::ears, report::Report};
 
 /// Which normal a vertex has; vertices that differ in it are not joined.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -89,13 +86,13 @@ fn triangulate(geometry: &Geometry, normals: &mut [Vec3], file: &Path, report: &
         points.clear();
         let corners = &geometry.corners[face.first..face.first + face.count];
         points.extend(corners.iter().map(|corner| geometry.positions[corner.position as usize]));
-        let Some(normal) = polygon::vector_area(&points).try_normalize() else {
+        let Some(normal) = ears::vector_area(&points).try_normalize() else {
             warn("faces without area are dropped");
             continue;
         };
         normals[index] = normal.as_vec3();
         found.clear();
-        if !polygon::triangulate(&points, normal, &mut found) {
+        if !ears::triangulate(&points, normal, &mut found) {
             warn("a polygon crosses itself or is too intricate; its triangles may overlap");
         }
         triangles.extend(found.iter().map(|triangle| Triangle {

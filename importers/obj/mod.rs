@@ -39,7 +39,7 @@ mod geometry;
 mod lines;
 mod material;
 mod mtl;
-mod polygon;
+
 mod texture;
 
 use std::collections::{HashMap, HashSet};

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use ajar_scene::{Diagnostic, Severity};
+use ajar_scene::{Diagnostic, SceneFile, Severity};
 
 use super::arguments::parse_bytes;
 use crate::session::{self, LoadOptions, Loaded};
@@ -25,8 +25,16 @@ pub(super) struct Input {
 impl Input {
     /// Opens the file. `size` is that of the film where the command line states it.
     pub fn load(&self, size: Option<[u32; 2]>) -> Result<Loaded, Vec<Diagnostic>> {
-        let Self { file, set, strict, memory_limit } = self;
-        session::load(file, &LoadOptions { size, set, strict: *strict, memory_limit: *memory_limit })
+        session::load(&self.file, &self.options(size))
+    }
+
+    /// Opens the file as it is: no camera or light is added.
+    pub fn open(&self) -> Result<SceneFile, Vec<Diagnostic>> {
+        session::open(&self.file, &self.options(None))
+    }
+
+    fn options(&self, size: Option<[u32; 2]>) -> LoadOptions<'_> {
+        LoadOptions { size, set: &self.set, strict: self.strict, memory_limit: self.memory_limit }
     }
 
     /// The least severity that makes a file unfit.

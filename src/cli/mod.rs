@@ -2,6 +2,7 @@
 
 mod arguments;
 mod checkpoints;
+mod convert;
 mod diff;
 mod exit;
 mod formats;
@@ -48,6 +49,8 @@ enum Command {
     Inspect(inspect::Args),
     /// Check that a file is fit to render, without rendering
     Validate(validate::Args),
+    /// Write a scene with all its textures into one file
+    Convert(convert::Args),
     /// List the file formats that can be read, and what of each is supported
     Formats(formats::Args),
     /// Compare an image with a reference, aware of noise
@@ -69,6 +72,7 @@ pub fn run() -> ExitCode {
         Command::Merge(args) => merge::run(&args, cli.log_format),
         Command::Inspect(args) => inspect::run(&args, cli.log_format),
         Command::Validate(args) => validate::run(&args, cli.log_format),
+        Command::Convert(args) => convert::run(&args, cli.log_format),
         Command::Formats(args) => formats::run(&args),
         Command::Diff(args) => diff::run(&args),
     };

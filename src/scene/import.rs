@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
 use crate::{Diagnostic, Scene};
 
 /// What an importer is given.
@@ -66,6 +68,26 @@ pub struct Imported {
     pub diagnostics: Vec<Diagnostic>,
     /// Every file that was read or looked for, for watch mode.
     pub files: Vec<PathBuf>,
+    /// How the asset wants to be rendered where nobody else says it.
+    pub render: Preference,
+}
+
+/// What an asset says about its picture.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Preference {
+    /// Name of the camera.
+    pub camera: Option<String>,
+    /// Width and height in pixels, 1 to 65535.
+    pub size: Option<[u32; 2]>,
+}
+
+impl Preference {
+    /// Takes over what this does not say.
+    pub fn complete(&mut self, other: Self) {
+        self.camera = self.camera.take().or(other.camera);
+        self.size = self.size.or(other.size);
+    }
 }
 
 /// One row of the support table that `ajar formats` prints.

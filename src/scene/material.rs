@@ -26,6 +26,7 @@ pub struct TextureInput {
     /// What to read.
     pub texture: Id<Texture>,
     /// Channel of scalar inputs; colours read RGB.
+    #[serde(default)]
     pub channel: Channel,
 }
 
@@ -64,7 +65,12 @@ pub struct NormalMap {
     /// The map.
     pub texture: Id<Texture>,
     /// Scale of the `x` and `y` components.
+    #[serde(default = "one")]
     pub scale: f32,
+}
+
+fn one() -> f32 {
+    1.0
 }
 
 /// A principled surface. Colours are linear Rec.709; reflectances and weights lie in [0, 1].

@@ -95,6 +95,11 @@ impl Bench {
         command
     }
 
+    /// Runs the program to its end with these environment variables.
+    pub fn run_with(&self, arguments: &str, variables: &[(&str, &str)]) -> Run {
+        Run::new(arguments, self.command(arguments).envs(variables.iter().copied()).output().unwrap())
+    }
+
     /// Runs the program to its end.
     pub fn run(&self, arguments: &str) -> Run {
         Run::new(arguments, self.command(arguments).output().unwrap())
@@ -163,6 +168,20 @@ impl Run {
     pub fn exits(self, code: i32) -> Self {
         let Self { arguments, out, err, .. } = &self;
         assert_eq!(self.code, Some(code), "ajar {arguments}\n--- out\n{out}\n--- err\n{err}");
+        self
+    }
+
+    /// Fails unless standard output holds all of these.
+    #[track_caller]
+    pub fn prints(self, wanted: &[&str]) -> Self {
+        for text in wanted {
+            assert!(
+                self.out.contains(text),
+                "ajar {} does not print {text:?}:\n{}",
+                self.arguments,
+                self.out
+            );
+        }
         self
     }
 

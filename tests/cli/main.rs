@@ -4,9 +4,12 @@
 
 mod bench;
 mod commands;
+mod convert;
 mod exits;
 mod images;
 mod messages;
+#[cfg(unix)]
+mod plugins;
 mod resume;
 mod set;
 #[cfg(unix)]

@@ -58,9 +58,9 @@ fn resumed_is_uninterrupted_for_every_integrator_and_number_of_threads() {
     let bench = Bench::new();
     for integrator in INTEGRATORS {
         bench.run(&format!("{} -o whole.exr --threads 1", room(integrator, 9))).exits(0);
-        bench.run(&format!("{} -o a.exr --threads 2 --checkpoint a.ajar", room(integrator, 1))).exits(0);
-        bench.run(&format!("{} -o a.exr --threads 1 --resume a.ajar", room(integrator, 4))).exits(0);
-        bench.run(&format!("{} -o b.exr --resume a.ajar --checkpoint b.ajar", room(integrator, 9))).exits(0);
+        bench.run(&format!("{} -o a.exr --threads 2 --checkpoint a.ckpt", room(integrator, 1))).exits(0);
+        bench.run(&format!("{} -o a.exr --threads 1 --resume a.ckpt", room(integrator, 4))).exits(0);
+        bench.run(&format!("{} -o b.exr --resume a.ckpt --checkpoint b.ckpt", room(integrator, 9))).exits(0);
         let whole = content(&bench, "whole.exr");
         assert!(
             whole.attributes.contains_key("ajar:noise")
@@ -68,7 +68,7 @@ fn resumed_is_uninterrupted_for_every_integrator_and_number_of_threads() {
         );
         assert!(whole == content(&bench, "b.exr"), "{integrator}");
         assert!(whole != content(&bench, "a.exr"), "{integrator}: the comparison sees nothing");
-        bench.run("merge b.ajar -o image.exr").exits(0);
+        bench.run("merge b.ckpt -o image.exr").exits(0);
         assert!(whole == content(&bench, "image.exr"), "{integrator}: made of the checkpoint");
     }
 }
@@ -98,47 +98,47 @@ fn merged_shards_are_the_unsplit_render_for_every_integrator() {
 fn samples_of_a_round_stay_as_they_were_and_crops_fit() {
     let bench = Bench::new();
     let crop = "--pixel-bounds 3,20,5,24 --float";
-    bench.run(&kitchen(&format!("--spp 8 -o a.exr --checkpoint a.ajar {crop}"))).exits(0);
-    bench.run(&kitchen(&format!("--spp 64 -o b.exr --resume a.ajar {crop}"))).exits(0);
-    bench.run(&kitchen(&format!("--spp 8 --rounds 64 -o c.exr --checkpoint c.ajar {crop}"))).exits(0);
-    bench.run(&kitchen(&format!("--rounds 64 -o c.exr --resume c.ajar {crop}"))).exits(0);
+    bench.run(&kitchen(&format!("--spp 8 -o a.exr --checkpoint a.ckpt {crop}"))).exits(0);
+    bench.run(&kitchen(&format!("--spp 64 -o b.exr --resume a.ckpt {crop}"))).exits(0);
+    bench.run(&kitchen(&format!("--spp 8 --rounds 64 -o c.exr --checkpoint c.ckpt {crop}"))).exits(0);
+    bench.run(&kitchen(&format!("--rounds 64 -o c.exr --resume c.ckpt {crop}"))).exits(0);
     let resumed = content(&bench, "b.exr");
     assert!(resumed == content(&bench, "c.exr"));
     assert_eq!(resumed.attributes["samplesPerPixel"], "I32(64)");
     assert_eq!(resumed.attributes["ajar:rounds"], "I32(64)");
     // Nothing is left to do: the image comes again.
-    bench.run(&kitchen(&format!("--spp 8 -o again.exr --resume a.ajar {crop}"))).exits(0);
+    bench.run(&kitchen(&format!("--spp 8 -o again.exr --resume a.ckpt {crop}"))).exits(0);
     assert!(resumed == content(&bench, "again.exr"), "--resume saves where it read");
 }
 
 #[test]
 fn another_render_is_not_resumed_and_differences_are_named() {
     let bench = Bench::new();
-    let first = "--rounds 2 -o a.exr --checkpoint a.ajar";
+    let first = "--rounds 2 -o a.exr --checkpoint a.ckpt";
     bench.run(&kitchen(first)).exits(0);
-    let before = fs::read(bench.path("a.ajar")).unwrap();
+    let before = fs::read(bench.path("a.ckpt")).unwrap();
     for (more, says) in [
-        ("--seed 7", "a.ajar: error: rendered with seed 0, not 7"),
+        ("--seed 7", "a.ckpt: error: rendered with seed 0, not 7"),
         ("--max-depth 3", "rendered with max depth 16, not 3"),
         ("--camera top", "rendered with another camera place"),
         ("--pixel-bounds 0,8,0,8", "rendered with pixel bounds [0,24,0,24], not [0,8,0,8]"),
         ("--shard 0/2", "holds shard 0/1, not 0/2"),
     ] {
-        bench.run(&kitchen(&format!("--rounds 4 -o b.exr --resume a.ajar {more}"))).exits(2).says(&[says]);
+        bench.run(&kitchen(&format!("--rounds 4 -o b.exr --resume a.ckpt {more}"))).exits(2).says(&[says]);
     }
-    let other = "render kitchen/scene.toml --size 8x8 --integrator bdpt --resume a.ajar";
+    let other = "render kitchen/scene.toml --size 8x8 --integrator bdpt --resume a.ckpt";
     bench.run(other).exits(2).says(&["integrator \"path\", not \"bdpt\"", "size [24,24], not [8,8]"]);
-    let scene = "--set light.sun.illuminance=3 --resume a.ajar -o b.exr";
+    let scene = "--set light.sun.illuminance=3 --resume a.ckpt -o b.exr";
     bench.run(&kitchen(scene)).exits(3).says(&["rendered with scene"]);
-    assert_eq!(fs::read(bench.path("a.ajar")).unwrap(), before);
+    assert_eq!(fs::read(bench.path("a.ckpt")).unwrap(), before);
     assert!(!bench.has("b.exr"));
 }
 
 #[test]
 fn damaged_and_foreign_files_are_3() {
     let bench = Bench::new();
-    bench.run(&kitchen("--rounds 1 -o a.exr --checkpoint a.ajar")).exits(0);
-    let whole = fs::read(bench.path("a.ajar")).unwrap();
+    bench.run(&kitchen("--rounds 1 -o a.exr --checkpoint a.ckpt")).exits(0);
+    let whole = fs::read(bench.path("a.ckpt")).unwrap();
     let mut flipped = whole.clone();
     flipped[whole.len() / 2] ^= 1;
     let mut newer = whole.clone();

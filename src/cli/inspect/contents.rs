@@ -25,6 +25,8 @@ pub(super) struct Contents<'a> {
     pub lights: Vec<LightEntry<'a>>,
     pub cameras: Vec<CameraEntry<'a>>,
     pub diagnostics: &'a [Diagnostic],
+    /// Every file that was read or looked for.
+    pub files: Vec<String>,
 }
 
 /// How many there are.
@@ -129,6 +131,7 @@ impl<'a> Contents<'a> {
             lights: scene.lights.iter().map(LightEntry::new).collect(),
             cameras: scene.cameras.iter().map(CameraEntry::new).collect(),
             diagnostics: &loaded.file.diagnostics,
+            files: loaded.file.files.iter().map(|file| file.to_string_lossy().into_owned()).collect(),
         }
     }
 }

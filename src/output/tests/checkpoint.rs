@@ -19,7 +19,7 @@ fn sample() -> Checkpoint {
 
 fn written() -> (tempfile::TempDir, std::path::PathBuf, Vec<u8>) {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("part.ajar");
+    let path = folder.path().join("part.ckpt");
     let Checkpoint { text, film, floats } = sample();
     write_checkpoint(&path, &text, &film, &floats).unwrap();
     let bytes = fs::read(&path).unwrap();

@@ -14,7 +14,8 @@ use super::{
     value::text,
 };
 use crate::{
-    Diagnostic, ImportRequest, Imported, Node, OutputSettings, Overrides, RenderSettings, Scene, Severity,
+    Diagnostic, ImportRequest, Imported, Node, OutputSettings, Overrides, Preference, RenderSettings, Scene,
+    Severity,
 };
 
 /// Reads a scene file below changes from the command line. `import` turns each file it names into a scene; it is given
@@ -49,7 +50,12 @@ pub fn load(
     }
 
     let request = ImportRequest::new(path);
-    let assets = Assets { request: &request, scene: Scene::default(), files: vec![path.to_owned()] };
+    let assets = Assets {
+        request: &request,
+        scene: Scene::default(),
+        files: vec![path.to_owned()],
+        preference: Preference::default(),
+    };
     let changes = overrides.table();
     let keys = Keys::new(&report, Some(&document), changes.get_ref());
     let (file, imported) = read(keys, assets, import);
@@ -65,13 +71,13 @@ pub fn load_asset(
     overrides: &Overrides,
     imported: Imported,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
-    let Imported { scene, diagnostics, files } = imported;
+    let Imported { scene, diagnostics, files, render: preference } = imported;
     let request = ImportRequest::new(path);
     let report = Report::new(path, "");
     let changes = overrides.table();
     let keys = Keys::new(&report, None, changes.get_ref());
     let nothing = |_: &ImportRequest| Ok(Imported::default());
-    let (file, _) = read(keys, Assets { request: &request, scene, files }, &nothing);
+    let (file, _) = read(keys, Assets { request: &request, scene, files, preference }, &nothing);
     sound(file, [report.finish(), diagnostics].concat())
 }
 
@@ -106,7 +112,7 @@ fn read(
             material::read(&pattern, table, &mut assets, complete);
         }
     }
-    let render = match keys.table("render") {
+    let mut render = match keys.table("render") {
         Some(table) => {
             let settings = settings::render(table);
             check_camera(&mut keys, &settings, &assets.scene, complete);
@@ -114,6 +120,8 @@ fn read(
         }
         None => RenderSettings::default(),
     };
+    render.camera = render.camera.or(assets.preference.camera);
+    render.size = render.size.or(assets.preference.size);
     let output = keys.table("output").map_or_else(OutputSettings::default, settings::output);
     keys.finish();
     let files = assets.files;
@@ -145,7 +153,8 @@ fn add_import(
     let name = name.unwrap_or_else(|| stem(&path));
     let allowed = vec![assets.request.folder().to_owned()];
     match import(&ImportRequest { path, allowed, memory_limit: assets.request.memory_limit }) {
-        Ok(Imported { scene, diagnostics: found, files }) => {
+        Ok(Imported { scene, diagnostics: found, files, render }) => {
+            assets.preference.complete(render);
             diagnostics.extend(found);
             assets.files.extend(files);
             let children = assets.scene.append(scene);

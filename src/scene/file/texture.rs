@@ -10,7 +10,8 @@ use super::{
     value::{choice, text, whole},
 };
 use crate::{
-    Channel, ColorSpace, Filter, Id, Image, ImageSource, ImportRequest, Scene, Texture, TextureInput, Wrap,
+    Channel, ColorSpace, Filter, Id, Image, ImageSource, ImportRequest, Preference, Scene, Texture,
+    TextureInput, Wrap,
 };
 
 /// What a texture is for; decides how its numbers are read by default.
@@ -29,6 +30,8 @@ pub(super) struct Assets<'a> {
     pub request: &'a ImportRequest,
     pub scene: Scene,
     pub files: Vec<PathBuf>,
+    /// What the imports say about the picture; the first to say something counts.
+    pub preference: Preference,
 }
 
 impl Assets<'_> {

@@ -51,7 +51,8 @@ fn import(request: &ImportRequest) -> Result<Imported, Diagnostic> {
     });
     scene.add_root(Node { name: "part".into(), meshes: vec![mesh], light: Some(light), ..Node::default() });
     let warning = Diagnostic::warning("something was dropped");
-    Ok(Imported { scene, diagnostics: vec![warning], files: vec![request.path.with_extension("bin")] })
+    let files = vec![request.path.with_extension("bin")];
+    Ok(Imported { scene, diagnostics: vec![warning], files, ..Imported::default() })
 }
 
 fn read(folder: &Path) -> Result<SceneFile, Vec<Diagnostic>> {

@@ -6,14 +6,14 @@
 use glam::{DVec2, DVec3, Vec2Swizzles, Vec3};
 
 /// Twice the vector area (M. Newell): the normal of a polygon that need not be planar, in f64.
-pub(super) fn vector_area(points: &[Vec3]) -> DVec3 {
+pub(crate) fn vector_area(points: &[Vec3]) -> DVec3 {
     let origin = points.first().copied().unwrap_or_default().as_dvec3();
     points.windows(2).map(|edge| (edge[0].as_dvec3() - origin).cross(edge[1].as_dvec3() - origin)).sum()
 }
 
 /// Splits a polygon with the given normal into triangles of indices into `points`, wound like the polygon; triangles
 /// without area are left out. `false`: it crosses itself, or is too intricate, and the triangles overlap.
-pub(super) fn triangulate(points: &[Vec3], normal: DVec3, out: &mut Vec<[u32; 3]>) -> bool {
+pub(crate) fn triangulate(points: &[Vec3], normal: DVec3, out: &mut Vec<[u32; 3]>) -> bool {
     if points.len() == 3 {
         out.push([0, 1, 2]);
         return true;

@@ -1,0 +1,58 @@
+//! Arrays: a range of the binary chunk, or the numbers themselves.
+
+use ajar_scene::{Cause, Diagnostic};
+use bytemuck::Pod;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde_json::Value;
+
+/// Part of the binary chunk.
+#[derive(Clone, Copy, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Range {
+    /// First byte.
+    pub offset: u64,
+    /// Number of items.
+    pub count: u64,
+}
+
+/// The binary chunk, and how many bytes may still be copied from it.
+pub(super) struct Binary<'a> {
+    pub bytes: &'a [u8],
+    pub budget: u64,
+}
+
+impl Binary<'_> {
+    /// The items that `given` holds or points to.
+    pub fn array<T: Pod + DeserializeOwned>(
+        &mut self,
+        given: Value,
+        element: &str,
+    ) -> Result<Vec<T>, Diagnostic> {
+        let wrong = |e: serde_json::Error| {
+            Diagnostic::error(format!("{e}; an array or {{\"offset\", \"count\"}} is needed"))
+                .element(element)
+        };
+        if given.is_array() {
+            return serde_json::from_value(given).map_err(wrong);
+        }
+        let range: Range = serde_json::from_value(given).map_err(wrong)?;
+        let size = size_of::<T>() as u64;
+        let beyond = || {
+            Diagnostic::error(format!(
+                "{} items of {size} bytes from byte {} reach beyond the {} bytes of the binary chunk",
+                range.count,
+                range.offset,
+                self.bytes.len()
+            ))
+            .element(element)
+        };
+        let length = range.count.checked_mul(size).ok_or_else(beyond)?;
+        let end = range.offset.checked_add(length).ok_or_else(beyond)?;
+        let part = usize::try_from(range.offset).ok().zip(usize::try_from(end).ok());
+        let part = part.and_then(|(start, end)| self.bytes.get(start..end)).ok_or_else(beyond)?;
+        self.budget = self.budget.checked_sub(length).ok_or_else(|| {
+            Diagnostic::error("needs more memory than the limit").because(Cause::Resource).element(element)
+        })?;
+        Ok(bytemuck::pod_collect_to_vec(part))
+    }
+}

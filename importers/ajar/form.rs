@@ -1,0 +1,159 @@
+//! From JSON to the scene: what is left out has the defaults of the scene graph, what is unknown is an error.
+
+use std::path::PathBuf;
+
+use ajar_scene::{
+    Arena, Diagnostic, Id, Image, ImageSource, ImportRequest, Imported, Material, Node, Scene, Texture,
+};
+use serde::{Deserialize, de::DeserializeOwned};
+use serde_json::{Map, Value, json};
+
+use super::{array::Binary, mesh};
+
+/// Version of the JSON, in its key `ajar`.
+pub(super) const VERSION: u64 = 1;
+
+/// An image: a file, or bytes of the binary chunk.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ImageForm {
+    #[serde(default)]
+    name: String,
+    file: Option<String>,
+    bytes: Option<Value>,
+}
+
+/// Reads JSON and binary chunk.
+pub(super) fn scene(json: &[u8], bytes: &[u8], request: &ImportRequest) -> Result<Imported, Diagnostic> {
+    let mut top: Map<String, Value> = serde_json::from_slice(json)
+        .map_err(|e| Diagnostic::error(format!("broken JSON: {e}")).at(e.line().max(1), e.column().max(1)))?;
+    match top.remove("ajar") {
+        Some(version) if version.as_u64() == Some(VERSION) => {}
+        Some(version) => {
+            return Err(
+                Diagnostic::error(format!("version {version}, only {VERSION} is known")).element("ajar")
+            );
+        }
+        None => return Err(Diagnostic::error("is no Ajar scene: the key \"ajar\" is missing")),
+    }
+    let mut binary = Binary { bytes, budget: request.memory_limit };
+    let mut imported = Imported::default();
+    let meshes = mesh::meshes(list(top.remove("meshes"), "meshes")?, &mut binary, &mut imported.diagnostics)?;
+    let mut nodes = completed(top.remove("nodes"), "nodes", &value(&Node::default())?)?;
+    meshes.rename(&mut nodes)?;
+    imported.render =
+        top.remove("render").map(|render| read(render, "render")).transpose()?.unwrap_or_default();
+    imported.scene = Scene {
+        nodes,
+        meshes: meshes.scene,
+        images: images(top.remove("images"), &mut binary, request, &mut imported.files)?,
+        materials: completed(top.remove("materials"), "materials", &value(&Material::default())?)?,
+        textures: completed(top.remove("textures"), "textures", &texture()?)?,
+        lights: completed(
+            top.remove("lights"),
+            "lights",
+            &json!({ "name": "", "color": [1.0, 1.0, 1.0], "kind": null }),
+        )?,
+        cameras: completed(
+            top.remove("cameras"),
+            "cameras",
+            &json!({ "name": "", "projection": null, "aspect": null, "exposure": 1.0 }),
+        )?,
+        roots: read(top.remove("roots").unwrap_or_else(|| json!([])), "roots")?,
+    };
+    match top.keys().next() {
+        Some(key) => Err(unknown(key)),
+        None => Ok(imported),
+    }
+}
+
+fn unknown(element: &str) -> Diagnostic {
+    Diagnostic::error("is no key of an Ajar scene").element(element)
+}
+
+/// A default as JSON.
+fn value<T: serde::Serialize>(default: &T) -> Result<Value, Diagnostic> {
+    serde_json::to_value(default).map_err(|e| Diagnostic::error(e.to_string()))
+}
+
+fn texture() -> Result<Value, Diagnostic> {
+    let mut default = value(&Texture::new(Id::new(0)))?;
+    default["image"] = Value::Null;
+    Ok(default)
+}
+
+/// Reads a value, with the path of what does not fit.
+pub(super) fn read<T: DeserializeOwned>(value: Value, element: &str) -> Result<T, Diagnostic> {
+    serde_path_to_error::deserialize(value).map_err(|e| {
+        let path = e.path().to_string();
+        let place = match path.as_str() {
+            "." => element.to_owned(),
+            _ if path.starts_with('[') => format!("{element}{path}"),
+            _ => format!("{element}.{path}"),
+        };
+        Diagnostic::error(e.into_inner().to_string()).element(place)
+    })
+}
+
+/// The items of a list.
+fn list(given: Option<Value>, element: &str) -> Result<Vec<Value>, Diagnostic> {
+    given.map_or_else(|| Ok(Vec::new()), |given| read(given, element))
+}
+
+/// A list whose items may leave out what `default` says.
+fn completed<T: DeserializeOwned>(
+    given: Option<Value>,
+    element: &str,
+    default: &Value,
+) -> Result<Arena<T>, Diagnostic> {
+    let item = |(i, mut item): (usize, Value)| {
+        let element = format!("{element}[{i}]");
+        complete(&mut item, default, &element)?;
+        read(item, &element)
+    };
+    list(given, element)?.into_iter().enumerate().map(item).collect()
+}
+
+/// Adds what is missing. A material's input may be written as its value alone.
+fn complete(given: &mut Value, default: &Value, element: &str) -> Result<(), Diagnostic> {
+    let Some(default) = default.as_object() else { return Ok(()) };
+    if !given.is_object() && default.contains_key("value") {
+        *given = json!({ "value": given.take() });
+    }
+    let Some(given) = given.as_object_mut() else {
+        return Err(Diagnostic::error("an object is needed").element(element));
+    };
+    if let Some(key) = given.keys().find(|key| !default.contains_key(*key)) {
+        return Err(unknown(&format!("{element}.{key}")));
+    }
+    for (key, default) in default {
+        match given.get_mut(key) {
+            Some(given) => complete(given, default, &format!("{element}.{key}"))?,
+            None => drop(given.insert(key.clone(), default.clone())),
+        }
+    }
+    Ok(())
+}
+
+fn images(
+    given: Option<Value>,
+    binary: &mut Binary,
+    request: &ImportRequest,
+    files: &mut Vec<PathBuf>,
+) -> Result<Arena<Image>, Diagnostic> {
+    let image = |(i, form): (usize, Value)| {
+        let element = format!("images[{i}]");
+        let form: ImageForm = read(form, &element)?;
+        let source = match (form.file, form.bytes) {
+            (Some(file), None) => {
+                let path = request.resolve(&file).map_err(|e| e.element(&element))?;
+                files.push(path.clone());
+                ImageSource::File(path)
+            }
+            (None, Some(bytes)) => ImageSource::Embedded(binary.array::<u8>(bytes, &element)?.into()),
+            _ => return Err(Diagnostic::error("either \"file\" or \"bytes\" is needed").element(element)),
+        };
+        Ok(Image { name: form.name, source })
+    };
+    list(given, "images")?.into_iter().enumerate().map(image).collect()
+}
