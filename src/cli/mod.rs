@@ -14,6 +14,7 @@ mod merge;
 mod progress;
 mod render;
 mod results;
+mod schema;
 mod signals;
 mod validate;
 
@@ -53,6 +54,8 @@ enum Command {
     Convert(convert::Args),
     /// List the file formats that can be read, and what of each is supported
     Formats(formats::Args),
+    /// Print the JSON Schema of scene.toml, for editors that complete and check it
+    Schema,
     /// Compare an image with a reference, aware of noise
     Diff(diff::Args),
 }
@@ -74,6 +77,7 @@ pub fn run() -> ExitCode {
         Command::Validate(args) => validate::run(&args, cli.log_format),
         Command::Convert(args) => convert::run(&args, cli.log_format),
         Command::Formats(args) => formats::run(&args),
+        Command::Schema => schema::run(),
         Command::Diff(args) => diff::run(&args),
     };
     exit.into()

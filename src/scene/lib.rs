@@ -28,7 +28,7 @@ pub use arena::{Arena, Id};
 pub use camera::{Camera, Projection};
 pub use defaults::framing_camera;
 pub use diagnostic::{Cause, Diagnostic, Severity};
-pub use file::{Overrides, SceneFile, load, load_asset};
+pub use file::{Overrides, SCHEMA, SceneFile, Setting, load, load_asset};
 pub use import::{Feature, ImportRequest, Imported, Importer, Preference};
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Channel, Input, Material, NormalMap, TextureInput};

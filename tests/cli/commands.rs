@@ -34,9 +34,32 @@ fn formats_lists_the_importers() {
         assert!(text.contains(part), "{part} in\n{text}");
     }
     let json: Value = serde_json::from_str(&bench.run("formats --json").exits(0).out).unwrap();
-    let names: Vec<_> = json["formats"].as_array().unwrap().iter().map(|it| &it["name"]).collect();
-    assert_eq!(names, ["scene", "gltf", "obj"]);
-    assert!(json["formats"][1]["features"].as_array().unwrap().iter().all(|row| row["support"].is_string()));
+    let formats = json["formats"].as_array().unwrap();
+    for name in ["scene", "ajar", "gltf", "obj", "plug-ins"] {
+        let format = formats.iter().find(|format| format["name"] == name).unwrap();
+        assert!(format["features"].as_array().unwrap().iter().all(|row| row["support"].is_string()));
+    }
+}
+
+#[test]
+fn inspect_tells_who_set_what() {
+    let bench = Bench::new();
+    bench.write("kitchen/look.toml", "extends = \"scene.toml\"\n[[camera]]\nname = \"main\"\nyfov = 20\n");
+    bench.run("inspect kitchen/look.toml --set camera.main.exposure=2").exits(0).prints(&[
+        "camera[0].yfov = 20 (look.toml)",
+        "camera[0].name = \"main\" (look.toml, over scene.toml)",
+        "camera[0].exposure = 2 (--set)",
+        "render.spp = 4 (scene.toml)",
+    ]);
+    let alone = bench.run("inspect kitchen/scene.toml").exits(0).out;
+    assert!(!alone.contains("settings"), "{alone}");
+}
+
+#[test]
+fn schema_is_json() {
+    let out = Bench::new().run("schema").exits(0).out;
+    let schema: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(schema["title"], "Ajar scene file");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, path::Path};
 
-use ajar_scene::{Diagnostic, Image, ImageSource, Material, Placed, Scene, Texture};
+use ajar_scene::{Diagnostic, Image, ImageSource, Material, Placed, Scene, Setting, Texture};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -25,6 +25,8 @@ pub(super) struct Contents<'a> {
     pub lights: Vec<LightEntry<'a>>,
     pub cameras: Vec<CameraEntry<'a>>,
     pub diagnostics: &'a [Diagnostic],
+    /// Every value that scene files and command line set, and who did.
+    pub settings: &'a [Setting],
     /// Every file that was read or looked for.
     pub files: Vec<String>,
 }
@@ -131,6 +133,7 @@ impl<'a> Contents<'a> {
             lights: scene.lights.iter().map(LightEntry::new).collect(),
             cameras: scene.cameras.iter().map(CameraEntry::new).collect(),
             diagnostics: &loaded.file.diagnostics,
+            settings: &loaded.file.settings,
             files: loaded.file.files.iter().map(|file| file.to_string_lossy().into_owned()).collect(),
         }
     }

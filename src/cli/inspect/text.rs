@@ -1,6 +1,8 @@
 //! The contents of a scene for people. Names come from files, so they are printed with control characters escaped.
 
-use ajar_scene::Diagnostic;
+use std::collections::BTreeSet;
+
+use ajar_scene::{Diagnostic, Setting};
 use serde_json::Value;
 
 use super::contents::{Bounds, Contents, Counts, MaterialEntry, NodeEntry, TextureEntry};
@@ -29,10 +31,25 @@ pub(super) fn describe(contents: &Contents<'_>, all: bool) -> String {
         section("lights", lights),
         section("cameras", cameras.iter().map(camera)),
         section("textures", textures.iter().map(texture)),
+        section("settings", settings(contents.settings)),
     ];
     sections.push(diagnostics.iter().map(Diagnostic::to_string).collect::<Vec<_>>().join("\n"));
     sections.retain(|section| !section.is_empty());
     sections.join("\n\n")
+}
+
+/// Who set what, where more than one could.
+fn settings(settings: &[Setting]) -> Vec<String> {
+    let sources: BTreeSet<_> = settings.iter().map(|setting| &setting.by).collect();
+    if sources.len() < 2 {
+        return Vec::new();
+    }
+    let line = |Setting { key, value, by, over }: &Setting| {
+        let value = value.split_whitespace().collect::<Vec<_>>().join(" ");
+        let over = if over.is_empty() { String::new() } else { format!(", over {}", over.join(", ")) };
+        format!("{key} = {value} ({by}{over})")
+    };
+    settings.iter().map(line).collect()
 }
 
 /// A title and indented lines; nothing without lines.

@@ -37,7 +37,7 @@ const KINDS: [(&str, Kind); 8] = [
 ];
 
 /// Reads a light and adds its node. `index` counts from 0.
-pub(super) fn read(mut keys: Keys<'_>, index: usize, assets: &mut Assets<'_>) {
+pub(super) fn read(mut keys: Keys<'_>, index: usize, assets: &mut Assets) {
     let name = keys.optional("name", text).unwrap_or_else(|| format!("light {}", index + 1));
     let color = keys.optional("color", numbers::<3>(0.0..)).unwrap_or([1.0; 3]);
     // Which keys there are depends on the type: without it, none can be called unknown.
@@ -61,7 +61,7 @@ fn place(keys: &mut Keys<'_>, kind: Kind) -> DAffine3 {
     }
 }
 
-fn shape(keys: &mut Keys<'_>, kind: Kind, assets: &mut Assets<'_>) -> LightKind {
+fn shape(keys: &mut Keys<'_>, kind: Kind, assets: &mut Assets) -> LightKind {
     match kind {
         Kind::Point => LightKind::Point { intensity: strength(keys, "intensity") },
         Kind::Spot => spot(keys),
@@ -115,6 +115,6 @@ fn degrees(keys: &mut Keys<'_>, key: &str, default: f64, range: impl RangeBounds
     keys.optional(key, number(range)).unwrap_or(default).to_radians() as f32
 }
 
-fn texture(keys: &mut Keys<'_>, assets: &mut Assets<'_>) -> Option<Id<Texture>> {
+fn texture(keys: &mut Keys<'_>, assets: &mut Assets) -> Option<Id<Texture>> {
     assets.texture(keys, "texture", Use::Color).map(|input| input.texture)
 }

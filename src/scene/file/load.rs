@@ -7,59 +7,32 @@ use toml::de::DeTable;
 use super::{
     SceneFile, camera,
     keys::Keys,
-    light, material, placement,
-    report::{Complaint, Report, advice},
+    layers, light, material, node, placement,
+    report::{Complaint, advice},
     settings,
+    source::{Settings, Source},
     texture::Assets,
     value::text,
 };
 use crate::{
-    Diagnostic, ImportRequest, Imported, Node, OutputSettings, Overrides, Preference, RenderSettings, Scene,
-    Severity,
+    Diagnostic, ImportRequest, Imported, Node, OutputSettings, Overrides, RenderSettings, Scene, Severity,
 };
 
-/// Reads a scene file below changes from the command line. `import` turns each file it names into a scene; it is given
-/// the folder of the scene file as one more folder that may be read.
+/// Reads a scene file, over the files that it extends, below changes from the command line. `import` turns each file it
+/// names into a scene; it is given the folder of the scene file as one more folder that may be read.
 ///
 /// # Errors
-/// All errors that were found, in the order of the file, with the warnings among them.
+/// All errors that were found, in the order of the files, with the warnings among them.
 pub fn load(
     path: &Path,
     overrides: &Overrides,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
-    let refuse = |message: String| vec![Diagnostic::error(message).in_file(path)];
-    let bytes = std::fs::read(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
-    let text = std::str::from_utf8(&bytes).map_err(|e| {
-        let before = String::from_utf8_lossy(bytes.get(..e.valid_up_to()).unwrap_or_default()).into_owned();
-        let report = Report::new(path, &before);
-        report.push(&(before.len()..before.len()), Diagnostic::error("is not text in UTF-8"));
-        report.finish()
-    })?;
-
-    let report = Report::new(path, text);
-    let (document, errors) = DeTable::parse_recoverable(text);
-    if !errors.is_empty() {
-        for error in errors {
-            report.push(&error.span().unwrap_or(0..0), Diagnostic::error(error.message()));
-        }
-        // What follows on the same line is mostly the parser finding its feet again.
-        let mut found = report.finish();
-        found.dedup_by_key(|diagnostic| diagnostic.place.map(|(line, _)| line));
-        return Err(found);
-    }
-
-    let request = ImportRequest::new(path);
-    let assets = Assets {
-        request: &request,
-        scene: Scene::default(),
-        files: vec![path.to_owned()],
-        preference: Preference::default(),
-    };
-    let changes = overrides.table();
-    let keys = Keys::new(&report, Some(&document), changes.get_ref());
-    let (file, imported) = read(keys, assets, import);
-    sound(file, [report.finish(), imported].concat())
+    let texts = layers::read(path)?;
+    let assets = Assets { files: texts.iter().map(|text| text.path.clone()).collect(), ..Assets::default() };
+    let mut sources = vec![overrides.source(path)];
+    sources.extend(layers::sources(&texts));
+    assemble(sources, assets, import)
 }
 
 /// Changes from the command line applied to an imported asset, as if a scene file imported nothing else.
@@ -72,18 +45,28 @@ pub fn load_asset(
     imported: Imported,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
     let Imported { scene, diagnostics, files, render: preference } = imported;
-    let request = ImportRequest::new(path);
-    let report = Report::new(path, "");
-    let changes = overrides.table();
-    let keys = Keys::new(&report, None, changes.get_ref());
+    let assets = Assets { scene, files, preference };
     let nothing = |_: &ImportRequest| Ok(Imported::default());
-    let (file, _) = read(keys, Assets { request: &request, scene, files, preference }, &nothing);
-    sound(file, [report.finish(), diagnostics].concat())
+    let file = assemble(vec![overrides.source(path)], assets, &nothing)?;
+    sound(SceneFile { diagnostics: [file.diagnostics, diagnostics].concat(), ..file })
+}
+
+/// What the sources together say, with what is to be said about them.
+fn assemble(
+    sources: Vec<Source<'_>>,
+    assets: Assets,
+    import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
+) -> Result<SceneFile, Vec<Diagnostic>> {
+    let settings = Settings::default();
+    let (mut file, imported) = read(Keys::new(&sources, &settings), assets, import);
+    file.diagnostics =
+        sources.into_iter().flat_map(|source| source.report.finish()).chain(imported).collect();
+    file.settings = settings.into_inner();
+    sound(file)
 }
 
 /// The file with what was said about it, unless that is an error.
-fn sound(file: SceneFile, diagnostics: Vec<Diagnostic>) -> Result<SceneFile, Vec<Diagnostic>> {
-    let file = SceneFile { diagnostics, ..file };
+fn sound(file: SceneFile) -> Result<SceneFile, Vec<Diagnostic>> {
     if file.diagnostics.iter().any(|it| it.severity == Severity::Error) {
         return Err(file.diagnostics);
     }
@@ -93,23 +76,30 @@ fn sound(file: SceneFile, diagnostics: Vec<Diagnostic>) -> Result<SceneFile, Vec
 /// Reads the document; returns also what the importers said.
 fn read(
     mut keys: Keys<'_>,
-    mut assets: Assets<'_>,
+    mut assets: Assets,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> (SceneFile, Vec<Diagnostic>) {
+    // Read before, by `layers`.
+    keys.optional(layers::EXTENDS, text);
     let mut imported = Vec::new();
     let mut complete = true;
     for table in keys.tables("import", import_name) {
         complete &= add_import(table, &mut assets, &mut imported, import);
     }
     for (index, table) in keys.tables("camera", own_name).into_iter().enumerate() {
-        camera::read(table, index, &mut assets.scene);
+        camera::read(table, index, &mut assets.scene, complete);
     }
     for (index, table) in keys.tables("light", own_name).into_iter().enumerate() {
         light::read(table, index, &mut assets);
     }
-    if let Some(mut tables) = keys.table("material") {
+    if let Some(tables) = keys.table("material") {
         for (pattern, table) in tables.named_tables() {
             material::read(&pattern, table, &mut assets, complete);
+        }
+    }
+    if let Some(tables) = keys.table("node") {
+        for (pattern, table) in tables.named_tables() {
+            node::read(&pattern, table, &mut assets, complete);
         }
     }
     let mut render = match keys.table("render") {
@@ -125,7 +115,15 @@ fn read(
     let output = keys.table("output").map_or_else(OutputSettings::default, settings::output);
     keys.finish();
     let files = assets.files;
-    (SceneFile { scene: assets.scene, render, output, diagnostics: Vec::new(), files }, imported)
+    let file = SceneFile {
+        scene: assets.scene,
+        render,
+        output,
+        diagnostics: Vec::new(),
+        files,
+        settings: Vec::new(),
+    };
+    (file, imported)
 }
 
 fn own_name(table: &DeTable<'_>) -> Option<String> {
@@ -141,18 +139,21 @@ fn import_name(table: &DeTable<'_>) -> Option<String> {
 /// Imports one file below a node of its own. Returns whether that worked.
 fn add_import(
     mut keys: Keys<'_>,
-    assets: &mut Assets<'_>,
+    assets: &mut Assets,
     diagnostics: &mut Vec<Diagnostic>,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> bool {
-    let file = keys.required("file", |value| assets.file(value));
+    let mut allowed = Vec::new();
+    let file = keys.required_of("file", |value, source| {
+        allowed.push(source.request.folder().to_owned());
+        assets.file(value, source)
+    });
     let name = keys.optional("name", text);
     let transform = placement::import(&mut keys);
     keys.finish();
     let Some(path) = file else { return false };
     let name = name.unwrap_or_else(|| stem(&path));
-    let allowed = vec![assets.request.folder().to_owned()];
-    match import(&ImportRequest { path, allowed, memory_limit: assets.request.memory_limit }) {
+    match import(&ImportRequest { allowed, ..ImportRequest::new(path) }) {
         Ok(Imported { scene, diagnostics: found, files, render }) => {
             assets.preference.complete(render);
             diagnostics.extend(found);

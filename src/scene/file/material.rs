@@ -19,7 +19,7 @@ type Edit = Box<dyn Fn(&mut Material)>;
 
 /// Reads one table and applies it to the materials that fit `pattern`. `complete` says that all imports were read, so
 /// that a name which fits nothing is the file's mistake.
-pub(super) fn read(pattern: &str, mut keys: Keys<'_>, assets: &mut Assets<'_>, complete: bool) {
+pub(super) fn read(pattern: &str, mut keys: Keys<'_>, assets: &mut Assets, complete: bool) {
     let edits = edits(&mut keys, assets);
     let mut fits = 0;
     for material in assets.scene.materials.iter_mut().filter(|it| glob::matches(pattern, &it.name)) {
@@ -32,7 +32,7 @@ pub(super) fn read(pattern: &str, mut keys: Keys<'_>, assets: &mut Assets<'_>, c
     keys.finish();
 }
 
-fn unmatched(pattern: &str, keys: &Keys<'_>, assets: &Assets<'_>) {
+fn unmatched(pattern: &str, keys: &Keys<'_>, assets: &Assets) {
     let names = || {
         let mut names: Vec<_> =
             assets.scene.materials.iter().map(|material| material.name.as_str()).collect();
@@ -50,7 +50,7 @@ fn unmatched(pattern: &str, keys: &Keys<'_>, assets: &Assets<'_>) {
 }
 
 /// All keys of a material table.
-fn edits(keys: &mut Keys<'_>, assets: &mut Assets<'_>) -> Vec<Edit> {
+fn edits(keys: &mut Keys<'_>, assets: &mut Assets) -> Vec<Edit> {
     let mut found = Found { keys, assets, edits: Vec::new() };
     found.input("base_color", 0.0..=1.0, |m| &mut m.base_color);
     found.input("diffuse_roughness", 0.0..=1.0, |m| &mut m.diffuse_roughness);
@@ -82,13 +82,13 @@ fn edits(keys: &mut Keys<'_>, assets: &mut Assets<'_>) -> Vec<Edit> {
     found.edits
 }
 
-struct Found<'k, 'r, 'a> {
+struct Found<'k, 'r> {
     keys: &'k mut Keys<'r>,
-    assets: &'k mut Assets<'a>,
+    assets: &'k mut Assets,
     edits: Vec<Edit>,
 }
 
-impl Found<'_, '_, '_> {
+impl Found<'_, '_> {
     /// A plain parameter.
     fn value<T: Copy + 'static>(
         &mut self,

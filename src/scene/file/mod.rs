@@ -7,13 +7,16 @@
 mod camera;
 mod glob;
 mod keys;
+mod layers;
 mod light;
 mod load;
 mod material;
+mod node;
 mod overrides;
 mod placement;
 mod report;
 mod settings;
+mod source;
 #[cfg(test)]
 mod tests;
 mod texture;
@@ -23,8 +26,12 @@ use std::path::PathBuf;
 
 pub use load::{load, load_asset};
 pub use overrides::Overrides;
+pub use source::Setting;
 
 use crate::{Diagnostic, OutputSettings, RenderSettings, Scene};
+
+/// The JSON Schema of scene files, for editors that complete and check them.
+pub const SCHEMA: &str = include_str!("schema.json");
 
 /// What a scene file says.
 #[derive(Clone, Debug)]
@@ -39,4 +46,6 @@ pub struct SceneFile {
     pub diagnostics: Vec<Diagnostic>,
     /// Every file that was read, for watch mode; the scene file comes first.
     pub files: Vec<PathBuf>,
+    /// Every value that was read, and who set it.
+    pub settings: Vec<Setting>,
 }

@@ -1,7 +1,10 @@
 //! Changes from the command line, `material.Chrome.roughness=0.2`, as a TOML document that goes before the file's.
 
+use std::path::Path;
+
 use toml::{Spanned, Value, de::DeTable};
 
+use super::source::Source;
 use crate::{Cause, Diagnostic};
 
 /// Changes to what a scene file says, by the same key paths. Cameras, lights and imports are named where the file has a
@@ -37,10 +40,11 @@ impl Overrides {
         if errors.is_empty() { Ok(Self { document }) } else { Err(errors) }
     }
 
-    /// The changes as a table.
-    pub(super) fn table(&self) -> Spanned<DeTable<'_>> {
+    /// The changes as a source, besides the file at `path`.
+    pub(super) fn source<'a>(&'a self, path: &'a Path) -> Source<'a> {
         // Parsed before.
-        DeTable::parse(&self.document).unwrap_or_else(|_| Spanned::new(0..0, DeTable::new()))
+        let document = DeTable::parse(&self.document).unwrap_or_else(|_| Spanned::new(0..0, DeTable::new()));
+        Source::command_line(path, &self.document, document)
     }
 }
 

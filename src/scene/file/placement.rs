@@ -23,7 +23,8 @@ pub(super) fn import(keys: &mut Keys<'_>) -> DAffine3 {
     DAffine3::from_mat3_translation(rotate * DMat3::from_diagonal(scale * unit) * up, translate)
 }
 
-fn scale(value: &DeValue<'_>) -> Result<DVec3, Complaint> {
+/// One factor or three, none of them zero.
+pub(super) fn scale(value: &DeValue<'_>) -> Result<DVec3, Complaint> {
     let scale = match value {
         DeValue::Array(_) => vector(value)?,
         _ => DVec3::splat(number(super::value::ANY)(value)?),
@@ -48,12 +49,13 @@ pub(super) fn rotation(degrees: DVec3) -> DMat3 {
     z * y * x
 }
 
-/// Position and target of a camera: its transform, and the distance of the target where there is one.
-pub(super) fn camera(keys: &mut Keys<'_>) -> (DAffine3, Option<f64>) {
-    let position = keys.optional("position", vector).unwrap_or(DVec3::ZERO);
+/// Position and target of a camera: its transform, and the distance of the target where there is one. What is not said is
+/// as in `base`.
+pub(super) fn camera(keys: &mut Keys<'_>, base: DAffine3) -> (DAffine3, Option<f64>) {
+    let position = keys.optional("position", vector).unwrap_or(base.translation);
     let target = keys.optional("target", vector);
     let up = keys.optional("up", vector);
-    let forward = target.map_or(DVec3::NEG_Z, |target| target - position);
+    let forward = target.map_or(-base.matrix3.z_axis, |target| target - position);
     if forward == DVec3::ZERO {
         keys.complain("target", Complaint::new("must differ from the position"));
     }
@@ -63,7 +65,12 @@ pub(super) fn camera(keys: &mut Keys<'_>) -> (DAffine3, Option<f64>) {
     {
         keys.complain("up", Complaint::new("must not lie along the line of sight"));
     }
-    (looking(position, forward, up.unwrap_or(DVec3::Y)), target.map(|target| target.distance(position)))
+    let transform = if target.is_none() && up.is_none() {
+        DAffine3::from_mat3_translation(base.matrix3, position)
+    } else {
+        looking(position, forward, up.unwrap_or(DVec3::Y))
+    };
+    (transform, target.map(|target| target.distance(position)))
 }
 
 /// Position and aim of a light: −Z along `direction`, towards `target`, or turned by `rotate`.

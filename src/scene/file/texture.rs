@@ -7,11 +7,11 @@ use toml::de::DeValue;
 use super::{
     keys::Keys,
     report::Complaint,
+    source::Source,
     value::{choice, text, whole},
 };
 use crate::{
-    Channel, ColorSpace, Filter, Id, Image, ImageSource, ImportRequest, Preference, Scene, Texture,
-    TextureInput, Wrap,
+    Channel, ColorSpace, Filter, Id, Image, ImageSource, Preference, Scene, Texture, TextureInput, Wrap,
 };
 
 /// What a texture is for; decides how its numbers are read by default.
@@ -26,18 +26,18 @@ pub(super) enum Use {
 }
 
 /// The scene that is being put together, and the files it came from.
-pub(super) struct Assets<'a> {
-    pub request: &'a ImportRequest,
+#[derive(Default)]
+pub(super) struct Assets {
     pub scene: Scene,
     pub files: Vec<PathBuf>,
     /// What the imports say about the picture; the first to say something counts.
     pub preference: Preference,
 }
 
-impl Assets<'_> {
-    /// A file named in the scene file, which must lie below its folder.
-    pub fn file(&mut self, value: &DeValue<'_>) -> Result<PathBuf, Complaint> {
-        let path = self.request.resolve(&text(value)?)?;
+impl Assets {
+    /// A file named by a scene file, which must lie below its folder.
+    pub fn file(&mut self, value: &DeValue<'_>, source: &Source<'_>) -> Result<PathBuf, Complaint> {
+        let path = source.request.resolve(&text(value)?)?;
         if !path.is_file() {
             return Err(Complaint::new(format!("\"{}\" is not a file", path.display())));
         }
@@ -48,13 +48,13 @@ impl Assets<'_> {
     /// Reads the texture of `key`, where there is one, into the scene.
     pub fn texture(&mut self, keys: &mut Keys<'_>, key: &str, purpose: Use) -> Option<TextureInput> {
         if !keys.is_table(key) {
-            let path = keys.optional(key, |value| self.file(value))?;
+            let path = keys.optional_of(key, |value, source| self.file(value, source))?;
             let texture =
                 Texture { color_space: color_space(&path, purpose), ..Texture::new(self.image(path)) };
             return Some(TextureInput { texture: self.unique(texture), channel: Channel::R });
         }
         let mut table = keys.table(key)?;
-        let file = table.required("file", |value| self.file(value));
+        let file = table.required_of("file", |value, source| self.file(value, source));
         let spaces = [("srgb", ColorSpace::Srgb), ("raw", ColorSpace::Raw), ("auto", ColorSpace::Auto)];
         let color_space_said = table.optional("color_space", choice(spaces));
         let wraps = [

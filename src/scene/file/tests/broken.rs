@@ -19,7 +19,9 @@ fn messages() {
         ),
         (
             "[sky]\n",
-            &["1:2: error: sky: unknown key\n  hint: one of import, camera, light, material, render, output"],
+            &[
+                "1:2: error: sky: unknown key\n  hint: one of extends, import, camera, light, material, node, render, output",
+            ],
         ),
         (
             "[[camera]]\n[[camera]]\n  fov = 3\n",
@@ -28,7 +30,7 @@ fn messages() {
         (
             "[[light]]\ntype = \"sphere\"\nwidth = 1\n",
             &[
-                "3:1: error: light[0].width: unknown key\n  hint: one of name, color, type, position, radiance, radius",
+                "3:1: error: light[0].width: unknown key\n  hint: one of remove, name, color, type, position, radiance, radius",
             ],
         ),
         // Wrong types.

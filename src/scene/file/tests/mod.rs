@@ -1,7 +1,9 @@
 //! The scene file against whole files: what they mean, and what is said about broken ones.
 
 mod broken;
+mod layers;
 mod meaning;
+mod nodes;
 mod reference;
 
 use std::{fs, path::Path};

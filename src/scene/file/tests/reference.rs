@@ -1,5 +1,7 @@
 //! `docs/scene-file.md` against the readers.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use toml::de::DeTable;
 
 use super::{right, wrong};
@@ -28,32 +30,52 @@ fn example_is_right() {
     assert!(file.scene.validate().is_empty(), "{:#?}", file.scene.validate());
 }
 
+/// Every kind of table, with a key that it does not know, and the path of its definition in the schema.
+const TABLES: [(&str, &str); 15] = [
+    ("[x]", ""),
+    ("[[import]]\nx = 1", "/properties/import/items"),
+    ("[[camera]]\nx = 1", "/properties/camera/items"),
+    ("[[light]]\ntype = \"point\"\nx = 1", "/properties/light/items"),
+    ("[[light]]\ntype = \"spot\"\nx = 1", "/properties/light/items"),
+    ("[[light]]\ntype = \"directional\"\nx = 1", "/properties/light/items"),
+    ("[[light]]\ntype = \"rect\"\nx = 1", "/properties/light/items"),
+    ("[[light]]\ntype = \"cylinder\"\nx = 1", "/properties/light/items"),
+    ("[[light]]\ntype = \"environment\"\nx = 1", "/properties/light/items"),
+    ("[material.\"*\"]\nxxxxxx = 1", "/properties/material/additionalProperties"),
+    ("[material.\"*\"]\nroughness_texture = { x = 1 }", "/$defs/scalar_texture/oneOf/1"),
+    ("[material.\"*\"]\nemission_texture = { x = 1 }", "/$defs/color_texture/oneOf/1"),
+    ("[node.\"*\"]\nxxxxxx = 1", "/properties/node/additionalProperties"),
+    ("[render]\nx = 1", "/properties/render"),
+    ("[output]\nx = 1", "/properties/output"),
+];
+
+/// The keys that a table may have, as the hint offers them.
+fn keys_of(toml: &str) -> Vec<String> {
+    let keys = |message: String| message.split("hint: one of ").nth(1).map(str::to_owned);
+    let all = wrong(toml, &[]).into_iter().filter_map(keys);
+    all.flat_map(|keys| keys.split(", ").map(str::to_owned).collect::<Vec<_>>()).collect()
+}
+
+/// The schema knows the keys that the readers know, no more and no less.
+#[test]
+fn schema_has_every_key() {
+    let schema: serde_json::Value = serde_json::from_str(crate::SCHEMA).unwrap();
+    let mut wanted: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
+    for (toml, path) in TABLES {
+        wanted.entry(path).or_default().extend(keys_of(toml));
+    }
+    for (path, keys) in wanted {
+        let table = schema.pointer(path).unwrap();
+        assert_eq!(table["additionalProperties"], false, "{path}");
+        let found: BTreeSet<_> = table["properties"].as_object().unwrap().keys().cloned().collect();
+        assert_eq!(found, keys, "{path}");
+    }
+}
+
 /// Every `key` that a hint can offer stands in the reference, and every field of a material has a key.
 #[test]
 fn reference_names_every_key() {
-    let mut keys: Vec<String> = [
-        "[x]",
-        "[[import]]\nx = 1",
-        "[[camera]]\nx = 1",
-        "[[camera]]\nhalf_height = 1\nx = 1",
-        "[[light]]\ntype = \"point\"\nx = 1",
-        "[[light]]\ntype = \"spot\"\nx = 1",
-        "[[light]]\ntype = \"directional\"\nx = 1",
-        "[[light]]\ntype = \"rect\"\nx = 1",
-        "[[light]]\ntype = \"cylinder\"\nx = 1",
-        "[[light]]\ntype = \"environment\"\nx = 1",
-        "[material.\"*\"]\nxxxxxx = 1",
-        "[material.\"*\"]\nroughness_texture = { x = 1 }",
-        "[render]\nx = 1",
-        "[output]\nx = 1",
-    ]
-    .iter()
-    .flat_map(|toml| wrong(toml, &[]))
-    .filter_map(|message| message.split("hint: one of ").nth(1).map(str::to_owned))
-    .flat_map(|keys| keys.split(", ").map(str::to_owned).collect::<Vec<_>>())
-    .collect();
-    keys.sort();
-    keys.dedup();
+    let keys: BTreeSet<String> = TABLES.iter().flat_map(|(toml, _)| keys_of(toml)).collect();
     assert!(keys.len() > 80, "{keys:?}");
     for key in &keys {
         let named = [format!("`{key}`"), format!("[{key}]"), format!("[{key}.")];
@@ -77,5 +99,5 @@ fn reference_names_every_key() {
 /// The example is TOML that any reader takes.
 #[test]
 fn example_is_toml() {
-    assert_eq!(DeTable::parse(example()).unwrap().get_ref().len(), 6);
+    assert_eq!(DeTable::parse(example()).unwrap().get_ref().len(), 7);
 }

@@ -1,0 +1,97 @@
+//! A scene file and the files that it extends.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use toml::de::DeTable;
+
+use super::{report::Report, source::Source};
+use crate::{Diagnostic, ImportRequest};
+
+/// Most files that may extend each other.
+const MOST: usize = 16;
+
+/// The key that names the file below.
+pub(super) const EXTENDS: &str = "extends";
+
+/// A file with its text.
+pub(super) struct Text {
+    pub path: PathBuf,
+    pub text: String,
+}
+
+/// Reads the file at `path` and all that it extends, the first of which counts.
+///
+/// # Errors
+/// A file that cannot be read or parsed, or files that extend each other in a circle.
+pub(super) fn read(path: &Path) -> Result<Vec<Text>, Vec<Diagnostic>> {
+    let mut texts: Vec<Text> = Vec::new();
+    let mut next = Some(path.to_owned());
+    while let Some(path) = next {
+        let text = text(&path)?;
+        next = below(&path, &text, &texts)?;
+        texts.push(Text { path, text });
+    }
+    Ok(texts)
+}
+
+/// The files as sources. All were parsed before.
+pub(super) fn sources(texts: &[Text]) -> Vec<Source<'_>> {
+    texts
+        .iter()
+        .filter_map(|Text { path, text }| Some(Source::file(path, text, DeTable::parse(text).ok()?)))
+        .collect()
+}
+
+fn text(path: &Path) -> Result<String, Vec<Diagnostic>> {
+    let refuse = |message: String| vec![Diagnostic::error(message).in_file(path)];
+    let bytes = fs::read(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let before = String::from_utf8_lossy(error.as_bytes().get(..valid).unwrap_or_default()).into_owned();
+        let report = Report::new(path, &before);
+        report.push(&(before.len()..before.len()), Diagnostic::error("is not text in UTF-8"));
+        report.finish()
+    })
+}
+
+/// The file that this one extends.
+fn below(path: &Path, text: &str, above: &[Text]) -> Result<Option<PathBuf>, Vec<Diagnostic>> {
+    let report = Report::new(path, text);
+    let (document, errors) = DeTable::parse_recoverable(text);
+    if !errors.is_empty() {
+        for error in errors {
+            report.push(&error.span().unwrap_or(0..0), Diagnostic::error(error.message()));
+        }
+        // What follows on the same line is mostly the parser finding its feet again.
+        let mut found = report.finish();
+        found.dedup_by_key(|diagnostic| diagnostic.place.map(|(line, _)| line));
+        return Err(found);
+    }
+    let Some(value) = document.get_ref().get(EXTENDS) else { return Ok(None) };
+    let refuse = |error: Diagnostic| {
+        let report = Report::new(path, text);
+        report.push(&value.span(), error.element(EXTENDS));
+        Err(report.finish())
+    };
+    let Some(name) = value.get_ref().as_str() else {
+        return refuse(Diagnostic::error(format!(
+            "expected the name of a file, found {}",
+            value.get_ref().type_str()
+        )));
+    };
+    let file = match ImportRequest::new(path).resolve(name) {
+        Ok(file) => file,
+        Err(error) => return refuse(error),
+    };
+    let same = |other: &Path| other.canonicalize().is_ok_and(|other| other == file);
+    if same(path) || above.iter().any(|text| same(&text.path)) {
+        return refuse(Diagnostic::error("extends itself"));
+    }
+    if above.len() + 2 > MOST {
+        return refuse(Diagnostic::error(format!("more than {MOST} files extend each other")));
+    }
+    Ok(Some(file))
+}
