@@ -191,7 +191,7 @@ fn the_undamaged_file_is_fine() {
     let imported = rich().import().unwrap();
     hold_together(&imported.scene);
     assert_eq!((imported.scene.meshes.len(), imported.scene.textures.len()), (2, 3));
-    assert_eq!(imported.scene.placed().len(), 4);
+    assert_eq!(imported.scene.placed().len(), 6);
 }
 
 #[test]
