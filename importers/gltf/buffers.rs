@@ -1,15 +1,17 @@
 //! The bytes of buffers, from the binary chunk, data URIs and files, and views into them.
 
-use std::cell::RefCell;
+use std::{cell::RefCell, collections::HashMap};
 
-use ajar_scene::{Diagnostic, Severity};
+use ajar_scene::{Cause, Diagnostic, Severity};
 use gltf::json::{Root, buffer::Buffer};
 
-use super::{Context, at, uri};
+use super::{Context, at, meshopt, uri};
 
 /// All buffers. One that cannot be had is an error only for what needs it.
 pub(super) struct Buffers {
     loaded: Vec<Result<Vec<u8>, Diagnostic>>,
+    /// Buffer views that were compressed, by index.
+    decoded: HashMap<usize, Result<Vec<u8>, Diagnostic>>,
     asked_for: RefCell<Vec<bool>>,
 }
 
@@ -22,7 +24,7 @@ pub(super) struct View<'a> {
 }
 
 impl Buffers {
-    /// Reads all buffers; `binary` is the GLB's chunk, which belongs to the first buffer if that has no URI.
+    /// Reads all buffers and decodes their compressed views; `binary` is the GLB's chunk, which belongs to the first buffer if that has no URI.
     ///
     /// # Errors
     /// Only the memory limit.
@@ -32,8 +34,16 @@ impl Buffers {
             let chunk = if i == 0 { binary.take() } else { None };
             loaded.push(load(buffer, &format!("buffers[{i}]"), chunk, context));
         }
+        let mut decoded = HashMap::new();
+        for (i, view) in root.buffer_views.iter().enumerate() {
+            match meshopt::decode(view, &loaded, context, &format!("bufferViews[{i}]")).transpose() {
+                Some(Err(error)) if error.cause == Cause::Resource => return Err(error),
+                Some(found) => drop(decoded.insert(i, found)),
+                None => {}
+            }
+        }
         let asked_for = RefCell::new(vec![false; loaded.len()]);
-        Ok(Self { loaded, asked_for })
+        Ok(Self { loaded, decoded, asked_for })
     }
 
     /// The bytes of `bufferViews[index]`, which `element` refers to.
@@ -46,6 +56,10 @@ impl Buffers {
         if let Some(asked) = self.asked_for.borrow_mut().get_mut(buffer) {
             *asked = true;
         }
+        let stride = view.byte_stride.map(|stride| stride.0);
+        if let Some(decoded) = self.decoded.get(&index) {
+            return Ok(View { bytes: decoded.as_ref().map_err(Clone::clone)?, stride });
+        }
         let element = format!("bufferViews[{index}]");
         let bytes = at(&self.loaded, buffer, "buffers", &element)?.as_ref().map_err(Clone::clone)?;
         let start = view.byte_offset.unwrap_or_default().0;
@@ -57,7 +71,7 @@ impl Buffers {
                 format!("{length} bytes from {start} on reach beyond buffers[{buffer}] of {total} bytes");
             Diagnostic::error(message).element(element)
         })?;
-        Ok(View { bytes, stride: view.byte_stride.map(|stride| stride.0) })
+        Ok(View { bytes, stride })
     }
 
     /// Warns about buffers that cannot be had and that nothing asked for.

@@ -29,6 +29,7 @@ pub const FEATURES: &[Feature] = &[
         support: "full, but morph targets of texture coordinates and colours",
     },
     Feature { name: "EXT_mesh_gpu_instancing", support: "full; attributes of applications are ignored" },
+    Feature { name: "EXT_meshopt_compression", support: "full" },
     Feature { name: "EXT_texture_webp", support: "full" },
     Feature {
         name: "KHR_animation_pointer",
@@ -61,9 +62,8 @@ pub const FEATURES: &[Feature] = &[
 ];
 
 /// What is lost with extensions that are not supported, for the message.
-const LOSSES: [(&str, &str); 21] = [
+const LOSSES: [(&str, &str); 20] = [
     ("EXT_lights_image_based", "the surrounding light is missing"),
-    ("EXT_meshopt_compression", "the uncompressed fallback is read where there is one"),
     ("GOOGLE_texture_basis", "its textures are dropped"),
     ("KHR_draco_mesh_compression", "the uncompressed fallback is read where there is one"),
     ("KHR_materials_coat", "its coat is missing"),

@@ -26,6 +26,7 @@ mod layers;
 mod light;
 mod material;
 mod mesh;
+mod meshopt;
 mod node;
 mod texture;
 mod topology;

@@ -74,12 +74,8 @@ const FACTS: [(&str, [usize; 6]); 57] = [
 ];
 
 /// Files that require what is not supported.
-const REFUSED: [(&str, &str); 4] = [
-    ("BoxMeshopt", "EXT_meshopt_compression"),
-    ("Box_Draco", "KHR_draco_mesh_compression"),
-    ("magnum_image-basis-embedded", "GOOGLE_texture_basis"),
-    ("meshopt-no-fallback", "EXT_meshopt_compression"),
-];
+const REFUSED: [(&str, &str); 2] =
+    [("Box_Draco", "KHR_draco_mesh_compression"), ("magnum_image-basis-embedded", "GOOGLE_texture_basis")];
 
 /// The folder of shared test assets, if there is one on this machine.
 pub fn shared() -> Option<PathBuf> {

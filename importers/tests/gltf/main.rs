@@ -9,6 +9,7 @@
 mod assets;
 mod attributes;
 mod build;
+mod compressed;
 mod deform;
 mod documents;
 mod geometry;
