@@ -169,10 +169,10 @@ fn the_memory_limit_holds() {
 #[test]
 fn required_extensions_must_be_supported() {
     let mut asset = Asset::triangle(json!({}));
-    asset.json["extensionsRequired"] = json!(["KHR_mesh_quantization", "EXT_meshopt_compression"]);
+    asset.json["extensionsRequired"] = json!(["KHR_mesh_quantization", "KHR_draco_mesh_compression"]);
     let (element, message) = failure(&asset);
     assert_eq!(element, "extensionsRequired[1]");
-    assert_eq!(message, "the file requires EXT_meshopt_compression, which is not supported");
+    assert_eq!(message, "the file requires KHR_draco_mesh_compression, which is not supported");
     for feature in importers()[0].features().iter().filter(|feature| feature.name.contains('_')) {
         asset.json["extensionsRequired"] = json!([feature.name]);
         assert!(asset.import().is_ok(), "{}", feature.name);
