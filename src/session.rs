@@ -13,7 +13,8 @@ use ajar_integrators::{
 };
 use ajar_render::{World, film::Film, world::prepare};
 use ajar_scene::{
-    Camera, Cause, Diagnostic, Id, ImportRequest, OutputSettings, Overrides, Scene, SceneFile, Severity,
+    Camera, Cause, Choice, Diagnostic, Id, ImportRequest, OutputSettings, Overrides, Scene, SceneFile,
+    Severity,
 };
 use glam::DAffine3;
 
@@ -42,6 +43,8 @@ pub struct LoadOptions<'a> {
     pub strict: bool,
     /// Bytes that no importer may exceed.
     pub memory_limit: u64,
+    /// Variants and moment of the assets, over those that a scene file says.
+    pub choice: &'a Choice,
 }
 
 /// Reads any file that some importer knows, or a `scene.toml`, checks it, and adds a camera or light where it has none.
@@ -64,10 +67,13 @@ pub fn load(path: &Path, options: &LoadOptions<'_>) -> Result<Loaded, Vec<Diagno
 /// Everything that makes it unfit to render.
 pub fn open(path: &Path, options: &LoadOptions<'_>) -> Result<SceneFile, Vec<Diagnostic>> {
     let memory_limit = options.memory_limit;
-    let import =
-        |request: &ImportRequest| ajar_importers::import(&ImportRequest { memory_limit, ..request.clone() });
+    let import = |request: &ImportRequest| {
+        let choice = options.choice.or(&request.choice);
+        ajar_importers::import(&ImportRequest { memory_limit, choice, ..request.clone() })
+    };
     let overrides = Overrides::parse(options.set)?;
     let mut file = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+        whole(path, options.choice).map_err(|d| vec![d])?;
         ajar_scene::load(path, &overrides, &import)?
     } else {
         let imported = import(&ImportRequest::new(path)).map_err(|d| vec![d])?;
@@ -79,6 +85,15 @@ pub fn open(path: &Path, options: &LoadOptions<'_>) -> Result<SceneFile, Vec<Dia
         return Err(file.diagnostics);
     }
     Ok(file)
+}
+
+/// Variants belong to one asset, a scene file may import several.
+fn whole(path: &Path, choice: &Choice) -> Result<(), Diagnostic> {
+    choice.variants.first().map_or(Ok(()), |name| {
+        let error = Diagnostic::error("a scene file has no variants itself").in_file(path);
+        let hint = format!("choose for one of its imports: --set 'import.NAME.variant={name}'");
+        Err(error.because(Cause::Usage).hint(hint))
+    })
 }
 
 /// The same messages, those without file being about `path`.

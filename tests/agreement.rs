@@ -9,6 +9,7 @@ use std::{path::Path, sync::atomic::AtomicBool};
 use ajar::session::{LoadOptions, choose_camera, load, prepare_world};
 use ajar_integrators::{Context, Integrator, Settings, Window, bdpt::Bdpt, brightness, path::PathTracer};
 use ajar_render::{World, film::Film};
+use ajar_scene::Choice;
 
 const WIDTH: u32 = 32;
 const HEIGHT: u32 = 24;
@@ -24,7 +25,8 @@ const LIMIT: f64 = 5.0;
 
 fn world(scene: &str) -> World {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene).join("scene.toml");
-    let options = LoadOptions { size: None, set: &[], strict: false, memory_limit: 4 << 30 };
+    let choice = Choice::default();
+    let options = LoadOptions { size: None, set: &[], strict: false, memory_limit: 4 << 30, choice: &choice };
     let file = load(&path, &options).unwrap().file;
     let camera = choose_camera(&file.scene, file.render.camera.as_deref()).unwrap();
     prepare_world(file.scene, camera, [WIDTH, HEIGHT], 4 << 30).unwrap().0

@@ -46,6 +46,7 @@ impl Importer for Ajar {
 
     fn import(&self, request: &ImportRequest) -> Result<Imported, Diagnostic> {
         let within = || -> Result<Imported, Diagnostic> {
+            request.refuse_variants()?;
             let unreadable = |e| Diagnostic::error(format!("cannot be read: {e}"));
             let size = fs::metadata(&request.path).map_err(unreadable)?.len();
             if size > request.memory_limit {

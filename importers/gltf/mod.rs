@@ -107,6 +107,7 @@ impl<'a> Context<'a> {
 }
 
 fn read(request: &ImportRequest) -> Result<Imported, Diagnostic> {
+    request.refuse_variants()?;
     let mut context = Context::new(request);
     let file = uri::read_file(&request.path, &mut context, "the file").map_err(|mut error| {
         error.element = None;

@@ -92,6 +92,7 @@ impl Importer for Obj {
     }
 
     fn import(&self, request: &ImportRequest) -> Result<Imported, Diagnostic> {
+        request.refuse_variants()?;
         let file = request.path.as_path();
         let mut report = Report::default();
         report.add(Diagnostic::note("OBJ states no units or up axis; taken as metres, Y up").in_file(file));

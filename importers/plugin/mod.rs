@@ -8,7 +8,7 @@ mod process;
 
 use std::{env, process::Command, time::Duration};
 
-use ajar_scene::{Cause, Diagnostic, Feature, ImportRequest, Imported, Importer};
+use ajar_scene::{Cause, Choice, Diagnostic, Feature, ImportRequest, Imported, Importer, Moment};
 
 use self::process::Program;
 use crate::head;
@@ -64,6 +64,7 @@ pub(crate) fn run(
         command.arg("--allow").arg(folder);
     }
     command.arg("--memory-limit").arg(request.memory_limit.to_string());
+    choose(&mut command, &request.choice);
     let program = Program { command, input, silence: silence()?, most: request.memory_limit };
     let end = program.run().map_err(|failure| {
         let error = Diagnostic::error(format!("{name} {failure}")).in_file(&request.path);
@@ -76,6 +77,21 @@ pub(crate) fn run(
         }
     })?;
     answer::imported(name, end, request)
+}
+
+/// Tells which variants and which moment are to be read.
+fn choose(command: &mut Command, choice: &Choice) {
+    for variant in &choice.variants {
+        command.arg("--variant").arg(variant);
+    }
+    match choice.moment {
+        Some(Moment::Frame(frame)) => drop(command.arg("--frame").arg(frame.to_string())),
+        Some(Moment::Seconds(seconds)) => drop(command.arg("--seconds").arg(seconds.to_string())),
+        None => {}
+    }
+    if let Some(fps) = choice.fps {
+        command.arg("--fps").arg(fps.to_string());
+    }
 }
 
 /// How long a plug-in may say nothing.

@@ -27,6 +27,14 @@ pub(super) fn parse_bounds(text: &str) -> Result<[u32; 4], String> {
         .ok_or_else(|| "give pixels x0,x1,y0,y1 with x0 < x1 and y0 < y1".into())
 }
 
+pub(super) fn parse_number(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "give a number".into())
+}
+
+pub(super) fn parse_fps(text: &str) -> Result<f64, String> {
+    parse_number(text).ok().filter(|fps| *fps > 0.0).ok_or_else(|| "give a number greater than 0".into())
+}
+
 pub(super) fn parse_bytes(text: &str) -> Result<u64, String> {
     let (number, unit) = text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()));
     let shift = match unit.trim().to_ascii_uppercase().as_str() {
@@ -65,6 +73,16 @@ mod tests {
         for bad in ["0,0,2,3", "0,1,3,2", "0,1,2", "-1,1,2,3", "0.5,1,2,3"] {
             assert!(parse_bounds(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn moments() {
+        assert_eq!(parse_number("-1.5"), Ok(-1.5));
+        assert_eq!(parse_fps("29.97"), Ok(29.97));
+        for bad in ["", "nan", "inf", "1e999", "1 s"] {
+            assert!(parse_number(bad).is_err(), "{bad}");
+        }
+        assert!(parse_fps("0").is_err() && parse_fps("-1").is_err());
     }
 
     #[test]

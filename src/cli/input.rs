@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use ajar_scene::{Diagnostic, SceneFile, Severity};
+use ajar_scene::{Choice, Diagnostic, Moment, SceneFile, Severity};
 
-use super::arguments::parse_bytes;
+use super::arguments::{parse_bytes, parse_fps, parse_number};
 use crate::session::{self, LoadOptions, Loaded};
 
 #[derive(Debug, clap::Args)]
@@ -20,21 +20,49 @@ pub(super) struct Input {
     /// Most memory for geometry and for decoded textures, each: 512M, 8G
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes, default_value = "8G")]
     pub memory_limit: u64,
+    #[command(flatten)]
+    chosen: Chosen,
+}
+
+#[derive(Debug, clap::Args)]
+struct Chosen {
+    /// Show this variant of the asset; may be given several times
+    #[arg(long, value_name = "NAME")]
+    variant: Vec<String>,
+    /// Show animations at this frame [default: the rest pose]
+    #[arg(long, value_name = "N", value_parser = parse_number, allow_negative_numbers = true, conflicts_with = "at")]
+    frame: Option<f64>,
+    /// Show animations at this time
+    #[arg(long, value_name = "SECONDS", value_parser = parse_number, allow_negative_numbers = true)]
+    at: Option<f64>,
+    /// Frames per second [default: what the file says, else 24]
+    #[arg(long, value_name = "N", value_parser = parse_fps)]
+    fps: Option<f64>,
+}
+
+impl Chosen {
+    fn choice(&self) -> Choice {
+        let moment = self.frame.map(Moment::Frame).or(self.at.map(Moment::Seconds));
+        Choice { variants: self.variant.clone(), moment, fps: self.fps }
+    }
 }
 
 impl Input {
     /// Opens the file. `size` is that of the film where the command line states it.
     pub fn load(&self, size: Option<[u32; 2]>) -> Result<Loaded, Vec<Diagnostic>> {
-        session::load(&self.file, &self.options(size))
+        let choice = self.chosen.choice();
+        session::load(&self.file, &self.options(size, &choice))
     }
 
     /// Opens the file as it is: no camera or light is added.
     pub fn open(&self) -> Result<SceneFile, Vec<Diagnostic>> {
-        session::open(&self.file, &self.options(None))
+        let choice = self.chosen.choice();
+        session::open(&self.file, &self.options(None, &choice))
     }
 
-    fn options(&self, size: Option<[u32; 2]>) -> LoadOptions<'_> {
-        LoadOptions { size, set: &self.set, strict: self.strict, memory_limit: self.memory_limit }
+    fn options<'a>(&'a self, size: Option<[u32; 2]>, choice: &'a Choice) -> LoadOptions<'a> {
+        let (set, strict, memory_limit) = (&self.set, self.strict, self.memory_limit);
+        LoadOptions { size, set, strict, memory_limit, choice }
     }
 
     /// The least severity that makes a file unfit.

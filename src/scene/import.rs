@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Diagnostic, Scene};
+use crate::{Cause, Diagnostic, Scene};
 
 /// What an importer is given.
 #[derive(Clone, Debug)]
@@ -15,12 +15,66 @@ pub struct ImportRequest {
     pub allowed: Vec<PathBuf>,
     /// No importer may hold more than this many bytes that the file alone asks for.
     pub memory_limit: u64,
+    /// What of the file is read, where it holds more than one still scene.
+    pub choice: Choice,
+}
+
+/// Frames per second where nothing says another number.
+const DEFAULT_FPS: f64 = 24.0;
+
+/// Which of the variants of an asset and which moment of its animation are read. The default: what the file shows by
+/// itself, in its rest pose.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Choice {
+    /// Names of variants, as the format writes them: `Red` in glTF, `/Prim:set=choice` in USD.
+    pub variants: Vec<String>,
+    /// The moment; `None` is the rest pose.
+    pub moment: Option<Moment>,
+    /// Frames per second, over what the file says.
+    pub fps: Option<f64>,
+}
+
+/// A moment of an animation, in the terms of whoever asks for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Moment {
+    /// A frame; parts of frames count.
+    Frame(f64),
+    /// Seconds.
+    Seconds(f64),
+}
+
+impl Choice {
+    /// The moment in seconds, for formats that know no frames: frame 0 is at 0 s.
+    pub fn seconds(&self) -> Option<f64> {
+        self.moment.map(|moment| match moment {
+            Moment::Frame(frame) => frame / self.fps.unwrap_or(DEFAULT_FPS),
+            Moment::Seconds(seconds) => seconds,
+        })
+    }
+
+    /// This choice, and what it leaves open as in `other`.
+    pub fn or(&self, other: &Self) -> Self {
+        let variants = if self.variants.is_empty() { &other.variants } else { &self.variants };
+        Self { variants: variants.clone(), moment: self.moment.or(other.moment), fps: self.fps.or(other.fps) }
+    }
 }
 
 impl ImportRequest {
-    /// A request with the defaults: only the file's own folder, 8 GiB.
+    /// A request with the defaults: only the file's own folder, 8 GiB, the rest pose.
     pub fn new(path: impl Into<PathBuf>) -> Self {
-        Self { path: path.into(), allowed: Vec::new(), memory_limit: 8 << 30 }
+        let choice = Choice::default();
+        Self { path: path.into(), allowed: Vec::new(), memory_limit: 8 << 30, choice }
+    }
+
+    /// For importers of formats that know no variants.
+    ///
+    /// # Errors
+    /// One is asked for.
+    pub fn refuse_variants(&self) -> Result<(), Diagnostic> {
+        self.choice.variants.first().map_or(Ok(()), |name| {
+            let message = format!("there is no variant \"{}\": the format has none", name.escape_debug());
+            Err(Diagnostic::error(message).in_file(&self.path).because(Cause::Usage))
+        })
     }
 
     /// The folder of the file.

@@ -147,3 +147,13 @@ fn validate_gives_a_verdict_and_writes_nothing() {
     assert!(run.err.contains("box.obj:2:"), "{}", run.err);
     assert_eq!(bench.files(), before);
 }
+
+#[test]
+fn variants_that_are_not_there_are_errors_of_usage() {
+    let bench = Bench::new();
+    bench.run("inspect kitchen/box.obj --variant Red").exits(2).says(&["variant \"Red\"", "has none"]);
+    let scene = bench.run("validate kitchen/scene.toml --variant Red");
+    scene.exits(2).says(&["--set 'import.NAME.variant=Red'"]);
+    bench.run("inspect leaf.gltf --frame 1 --at 2").exits(2);
+    bench.run("inspect leaf.gltf --fps 0").exits(2);
+}

@@ -154,3 +154,19 @@ fn the_example_reads_stl() {
     }
     bench.run_with("validate short.stl", &[("PATH", &path)]).exits(3).says(&["1 facets are announced"]);
 }
+
+#[test]
+fn it_is_told_which_variants_and_moment_to_show() {
+    let bench = importing(&format!("echo \"$@\" > asked; cat << END\n{SCENE}\nEND"));
+    let asked = |words: &str| {
+        run(&bench, words).exits(0);
+        fs::read_to_string(bench.path("asked")).unwrap().trim().to_owned()
+    };
+    let told = asked("inspect a.toy --variant Red --variant /A:b=c --frame 3 --fps 30");
+    assert!(told.ends_with("--variant Red --variant /A:b=c --frame 3 --fps 30"), "{told}");
+    bench.write("toy.toml", "[[import]]\nfile = \"a.toy\"\nvariant = \"Red\"\nframe = 7\n");
+    let told = asked("inspect toy.toml");
+    assert!(told.ends_with("--variant Red --frame 7"), "{told}");
+    let told = asked("inspect toy.toml --at 1.5 --set import.a.variant=Blue");
+    assert!(told.ends_with("--variant Blue --seconds 1.5"), "{told}");
+}

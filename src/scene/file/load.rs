@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 
 use super::{
-    SceneFile, camera,
+    SceneFile, camera, choice,
     keys::Keys,
     layers, light, material, node, placement,
     report::{Complaint, advice},
@@ -150,10 +150,11 @@ fn add_import(
     });
     let name = keys.optional("name", text);
     let transform = placement::import(&mut keys);
+    let choice = choice::read(&mut keys);
     keys.finish();
     let Some(path) = file else { return false };
     let name = name.unwrap_or_else(|| stem(&path));
-    match import(&ImportRequest { allowed, ..ImportRequest::new(path) }) {
+    match import(&ImportRequest { allowed, choice, ..ImportRequest::new(path) }) {
         Ok(Imported { scene, diagnostics: found, files, render }) => {
             assets.preference.complete(render);
             diagnostics.extend(found);

@@ -5,6 +5,7 @@
 //! column and advice, where a deserializer stops at the first.
 
 mod camera;
+mod choice;
 mod glob;
 mod keys;
 mod layers;

@@ -1,6 +1,7 @@
 //! The scene file against whole files: what they mean, and what is said about broken ones.
 
 mod broken;
+mod choice;
 mod layers;
 mod meaning;
 mod nodes;
