@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from .report import Failure
+from .report import StageError
 
 # Bytes that a node takes, roughly, here and in its reader.
 NODE_SIZE = 1024
@@ -76,13 +76,13 @@ class Document:
     def check(self, size: int) -> None:
         """Stops where the limit on memory is met."""
         if size > self.memory_limit:
-            raise Failure(f"more than the limit of {self.memory_limit} bytes is needed", cause="resource")
+            raise StageError(f"more than the limit of {self.memory_limit} bytes is needed", cause="resource")
 
     def place(self, root: Node) -> None:
         """Makes the tree below `root` nodes of the scene; shared subtrees become nodes of each parent."""
         most = self.memory_limit // NODE_SIZE
         if count(root) > most:
-            raise Failure(f"instances make {count(root)} nodes, the limit on memory allows {most}", cause="resource")
+            raise StageError(f"instances make {count(root)} nodes, the limit on memory allows {most}", cause="resource")
         self.lists.setdefault("roots", []).append(self.emit(root))  # type: ignore[arg-type]
 
     def emit(self, node: Node) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 from pxr import Tf, Usd, UsdGeom
 
 from .document import NODE_SIZE, Node
-from .report import Failure
+from .report import StageError
 
 if TYPE_CHECKING:
     from .walk import Walk
@@ -22,7 +22,9 @@ def fill(walk: Walk, prim: Usd.Prim, node: Node, depth: int) -> None:
     if not len(chosen):
         return
     if len(chosen) * NODE_SIZE > walk.document.memory_limit:
-        raise Failure(f"{len(chosen)} instances are more than the limit on memory allows", str(prim.GetPath()), cause="resource")
+        raise StageError(
+            f"{len(chosen)} instances are more than the limit on memory allows", str(prim.GetPath()), cause="resource"
+        )
     if chosen.min() < 0 or chosen.max() >= len(targets):
         walk.report.warn(prim.GetPath(), f"the instances are dropped: an index is beyond the {len(targets)} prototypes")
         return

@@ -10,7 +10,7 @@ from urllib.parse import urlparse
 
 from pxr import Ar, Sdf, Tf
 
-from .report import Failure, Report
+from .report import Report, StageError, commentary
 
 # Bytes that usd-core needs for a prim, roughly.
 PRIM_SIZE = 2048
@@ -28,14 +28,14 @@ class Jail:
         """`path` if it may be read; of a path into a package, the package counts."""
         outer = Ar.SplitPackageRelativePathOuter(path)[0] if Ar.IsPackageRelativePath(path) else path
         if len(urlparse(outer).scheme) > 1:
-            raise Failure(f"{path!r} is on the network; only files beside the scene are read", place)
+            raise StageError(f"{path!r} is on the network; only files beside the scene are read", place)
         try:
             real = Path(outer).resolve()
         except (OSError, RuntimeError, ValueError) as error:
-            raise Failure(f"{path!r} is no path: {error}", place) from error
+            raise StageError(f"{path!r} is no path: {error}", place) from error
         if not any(real.is_relative_to(folder) for folder in self.folders):
             hint = "move it there or allow its folder"
-            raise Failure(f"{path!r} lies outside the scene's folder", place, hint)
+            raise StageError(f"{path!r} lies outside the scene's folder", place, hint)
         return path
 
 
@@ -48,9 +48,9 @@ def check(file: Path, jail: Jail, memory_limit: int, report: Report) -> None:
     try:
         size = file.stat().st_size
     except OSError as error:
-        raise Failure(f"cannot be read: {error.strerror}") from error
+        raise StageError(f"cannot be read: {error.strerror}") from error
     if size > memory_limit:
-        raise Failure(f"{size} bytes are more than the memory limit", cause="resource")
+        raise StageError(f"{size} bytes are more than the memory limit", cause="resource")
     visited = Visited(jail, memory_limit // PRIM_SIZE, report)
     visited.layer(str(file.resolve()), None)
     visited.count()
@@ -72,7 +72,7 @@ class Visited:
             if path in self.layers:
                 continue
             if len(self.layers) > MOST_LAYERS:
-                raise Failure(f"more than {MOST_LAYERS} layers", place, cause="resource")
+                raise StageError(f"more than {MOST_LAYERS} layers", place, cause="resource")
             self.layers[path] = layer = self.open(self.jail.check(path, place), place)
             if layer:
                 todo += [(located(layer, asset, place), place) for asset, place in arcs(layer) if asset]
@@ -88,8 +88,7 @@ class Visited:
             return Sdf.Layer.FindOrOpen(path)
         except Tf.ErrorException as error:
             if place is None:
-                message = str(error).strip().splitlines()[-1].split(" -- ")[-1].strip().strip("'")
-                raise Failure(f"is no USD that can be read: {message}") from error
+                raise StageError(f"is no USD that can be read: {commentary(error)}") from error
             return None
 
     def count(self) -> None:
@@ -107,7 +106,7 @@ class Visited:
         key = (path, str(prim))
         if key not in self.counts:
             if depth > DEEPEST:
-                raise Failure(f"prims and references are nested more than {DEEPEST} deep", str(prim))
+                raise StageError(f"prims and references are nested more than {DEEPEST} deep", str(prim))
             # A cycle adds nothing; usd-core reports it.
             self.counts[key] = 0
             total = 1 + sum(self.below(path, child.path, depth + 1) for child in children(spec))
@@ -115,7 +114,7 @@ class Visited:
                 other = located(layer, asset, None) if asset else path
                 total += self.below(other, target or self.default(other), depth + 1)
             if total > self.most:
-                raise Failure(f"references make {total} prims, the limit on memory allows {self.most}", str(prim))
+                raise StageError(f"references make {total} prims, the limit on memory allows {self.most}", str(prim))
             self.counts[key] = total
         return self.counts[key]
 
@@ -135,7 +134,7 @@ def spec_at(layer: Any, path: Any) -> Any:
 def located(layer: Any, asset: str, place: str | None) -> str:
     """Where `asset` lies, seen from `layer`."""
     if asset.startswith("`"):
-        raise Failure(f"{asset!r} is computed; such paths are not read", place)
+        raise StageError(f"{asset!r} is computed; such paths are not read", place)
     asset = Sdf.Layer.SplitIdentifier(asset)[0]
     path = str(Sdf.ComputeAssetPathRelativeToLayer(layer, asset))
     if Path(path).is_absolute() or len(urlparse(path).scheme) > 1 or not layer.realPath:
@@ -200,10 +199,12 @@ def check_package(path: Path, place: str | None) -> None:
         with zipfile.ZipFile(path) as package:
             entries = package.infolist()
     except (zipfile.BadZipFile, OSError, NotImplementedError, ValueError) as error:
-        raise Failure(f"is no package that can be read: {error}", place) from error
+        raise StageError(f"is no package that can be read: {error}", place) from error
     for entry in entries:
         parts = entry.filename.replace("\\", "/").split("/")
         if entry.filename.startswith(("/", "\\")) or ".." in parts or ":" in parts[0]:
-            raise Failure(f"the package holds {entry.filename!r}, which leaves it", place)
+            raise StageError(f"the package holds {entry.filename!r}, which leaves it", place)
         if entry.compress_type != zipfile.ZIP_STORED or entry.flag_bits & 1:
-            raise Failure(f"the package holds {entry.filename!r} compressed or encrypted; USD wants files as they are", place)
+            raise StageError(
+                f"the package holds {entry.filename!r} compressed or encrypted; USD wants files as they are", place
+            )

@@ -99,7 +99,10 @@ class Lamp:
         for name in ("diffuse", "specular"):
             if self.get(name, 1.0) != 1.0:
                 self.warn(f"the multiplier {name!r} is ignored: light is physical")
-        for name, api in (("light", self.api.GetLightLinkCollectionAPI()), ("shadow", self.api.GetShadowLinkCollectionAPI())):
+        for name, api in (
+            ("light", self.api.GetLightLinkCollectionAPI()),
+            ("shadow", self.api.GetShadowLinkCollectionAPI()),
+        ):
             if not api.GetIncludesRel().HasAuthoredTargets() and not api.GetExcludesRel().HasAuthoredTargets():
                 continue
             self.warn(f"{name} linking is ignored: the light shines on everything")

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from .document import Document
-from .report import Failure, Report
+from .report import Report, StageError
 
 EXTENSIONS = ["usd", "usda", "usdc", "usdz"]
 HEADS = [b"#usda", b"PXR-USDC"]
@@ -24,7 +24,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--memory-limit", default=8 << 30, type=int)
     parser.add_argument("--variant", action="append", default=[])
     parser.add_argument("--frame", type=float)
-    parser.add_argument("--time", type=float)
+    parser.add_argument("--seconds", type=float)
+    parser.add_argument("--fps", type=float)
     return parser.parse_known_args()[0]
 
 
@@ -36,7 +37,8 @@ def convert(args: argparse.Namespace, report: Report) -> Document:
     jail = layers.Jail(args.file, args.allow)
     with report.listening():
         layers.check(args.file, jail, args.memory_limit, report)
-        opened = stage.open_stage(args.file, args.variant, args.frame, args.time, jail, report)
+        moment = stage.Moment(args.frame, args.seconds, args.fps)
+        opened = stage.open_stage(args.file, args.variant, moment, jail, report)
         document = Document(args.memory_limit)
         walk.Walk(opened, document, jail, report).run()
     return document
@@ -51,20 +53,20 @@ def main() -> None:
     report = Report()
     # Folders of the environment would be searched for layers that are not beside the scene.
     os.environ.pop("PXR_AR_DEFAULT_SEARCH_PATH", None)
-    # Bindings of prims that do not apply the schema act as they do elsewhere, without a warning for each.
-    os.environ["USD_SHADE_MATERIAL_BINDING_API_CHECK"] = "allowMissingAPI"
+    # Bindings of prims that do not apply the schema act all the same: no warning for each.
+    os.environ["USD_SHADE_WARN_ON_MISSING_MATERIAL_BINDING_API"] = "0"
     sys.setrecursionlimit(20_000)
     try:
         if args.file is None:
-            raise Failure("--probe or --import FILE is needed", cause="usage")
+            raise StageError("--probe or --import FILE is needed", cause="usage")
         document = convert(args, report)
-    except Failure as failure:
+    except StageError as failure:
         report.fail(failure)
         sys.exit(1)
     except ImportError as error:
-        report.fail(Failure(f"{error}; {sys.executable} lacks a package that USD files need", cause="system"))
+        report.fail(StageError(f"{error}; {sys.executable} lacks a package that USD files need", cause="system"))
         sys.exit(1)
     except (MemoryError, RecursionError) as error:
-        report.fail(Failure(f"the stage is too large: {type(error).__name__}", cause="resource"))
+        report.fail(StageError(f"the stage is too large: {type(error).__name__}", cause="resource"))
         sys.exit(1)
     document.write(sys.stdout.buffer)

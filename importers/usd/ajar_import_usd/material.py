@@ -13,7 +13,7 @@ from .layers import Jail
 from .network import Network, category, located
 from .report import Report
 from .surface import Surface
-from .terms import Coordinates, Image, Unsupported
+from .terms import Coordinates, Image, UnsupportedError
 
 # Where outputs of several render contexts are there, the first that can be read wins.
 CONTEXTS = ["mtlx", "", "arnold"]
@@ -88,7 +88,11 @@ class Materials:
                 self.name_what_is_ignored(material)
                 return
             unknown.append(category(shader) or str(shader.GetPath()))
-        what = f"surface shaders {', '.join(dict.fromkeys(unknown))} are not read" if unknown else "it has no surface shader"
+        what = (
+            f"surface shaders {', '.join(dict.fromkeys(unknown))} are not read"
+            if unknown
+            else "it has no surface shader"
+        )
         self.report.warn(material.GetPath(), f"the material is grey: {what}")
         surface.item["base_color"] = [GREY] * 3
 
@@ -122,7 +126,7 @@ class Materials:
         attribute = prim.GetAttribute("inputs:texture:file")
         try:
             path = located(attribute, asset, self.jail, self.report)
-        except Unsupported as unsupported:
+        except UnsupportedError as unsupported:
             self.report.warn(prim.GetPath(), f"the light has no texture: {unsupported}")
             return None
         return self.texture(Image(path, Coordinates(), "auto", "clamp", "clamp"), None, None)
@@ -152,7 +156,7 @@ class Materials:
             if Ar.IsPackageRelativePath(path):
                 asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(path))
                 if not asset:
-                    raise Unsupported(f"the file {path} cannot be read")
+                    raise UnsupportedError(f"the file {path} cannot be read")
                 item: dict[str, Any] = {"name": name, "bytes": self.document.bytes(bytes(asset.GetBuffer()))}
             else:
                 item = {"name": name, "file": path}

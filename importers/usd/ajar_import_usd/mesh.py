@@ -53,7 +53,7 @@ def mesh(walk: Walk, prim: Usd.Prim, bound: str | None) -> list[int]:
     if parts:
         item["parts"] = [{"material": walk.materials.index(name), "faces": faces} for name, faces in parts]
     holes = np.array(schema.GetHoleIndicesAttr().Get(walk.time) or [], dtype=np.int64)
-    if len(holes) and 0 <= holes.min() and holes.max() < len(topology.faces):
+    if len(holes) and holes.min() >= 0 and holes.max() < len(topology.faces):
         item["holes"] = walk.document.indices(holes)
     elif len(holes):
         walk.report.warn(prim.GetPath(), f"holes are dropped: an index is beyond the {len(topology.faces)} faces")
@@ -135,13 +135,17 @@ def read_topology(walk: Walk, schema: UsdGeom.Mesh) -> Topology | None:
     faces = np.array(schema.GetFaceVertexCountsAttr().Get(walk.time) or [], dtype=np.int64)
     corners = np.array(schema.GetFaceVertexIndicesAttr().Get(walk.time) or [], dtype=np.int64)
     if not len(positions) or not len(faces):
-        return dropped("it has no faces")
+        dropped("it has no faces")
+        return None
     if not np.all(np.isfinite(positions)):
-        return dropped("a position is not finite")
+        dropped("a position is not finite")
+        return None
     if faces.min() < 0 or faces.sum() != len(corners):
-        return dropped(f"its faces have {faces.sum()} corners, there are {len(corners)}")
+        dropped(f"its faces have {faces.sum()} corners, there are {len(corners)}")
+        return None
     if len(corners) and (corners.min() < 0 or corners.max() >= len(positions)):
-        return dropped(f"a corner is beyond its {len(positions)} points")
+        dropped(f"a corner is beyond its {len(positions)} points")
+        return None
     order = None
     if schema.GetOrientationAttr().Get(walk.time) == UsdGeom.Tokens.leftHanded:
         order = reversed_corners(faces)
@@ -229,7 +233,12 @@ def creases(walk: Walk, schema: UsdGeom.Mesh, positions: int) -> tuple[np.ndarra
     if not len(lengths):
         return none
     within = not np.any((chain < 0) | (chain >= positions))
-    if lengths.min() < 2 or lengths.sum() != len(chain) or not within or len(sharpness) not in (len(edges), edges.sum()):
+    if (
+        lengths.min() < 2
+        or lengths.sum() != len(chain)
+        or not within
+        or len(sharpness) not in (len(edges), edges.sum())
+    ):
         walk.report.warn(schema.GetPath(), "creases are dropped: indices, lengths and sharpnesses do not fit")
         return none
     ends = np.zeros(len(chain), bool)

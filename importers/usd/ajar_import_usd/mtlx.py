@@ -1,4 +1,4 @@
-"""MaterialX files: usd-core has no reader for them, so what prims reference in them is written into the session layer."""
+"""MaterialX files: usd-core cannot read them, so what prims reference in them is written into the session layer."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TYPES = {
 
 
 def resolve(stage: Usd.Stage, jail: Jail, report: Report) -> None:
-    """Writes materials below every prim that references a `.mtlx` file, at the paths of UsdMtlx: /MaterialX/Materials."""
+    """Writes materials below every prim that references a `.mtlx` file, at UsdMtlx's paths: /MaterialX/Materials."""
     documents: dict[str, Any] = {}
     for prim in list(Usd.PrimRange.Stage(stage, Usd.PrimAllPrimsPredicate)):
         for path, target in references(prim):

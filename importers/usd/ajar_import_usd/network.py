@@ -11,10 +11,12 @@ from pxr import Sdf, Usd, UsdShade
 from . import layers
 from .layers import Jail
 from .report import Report
-from .terms import Coordinates, Image, Term, Unsupported, constant
+from .terms import Coordinates, Image, Term, UnsupportedError, constant
 
 DEEPEST = 100
-TYPED = re.compile(r"^ND_(.+?)_(?:float|color[34]|vector[234]|integer|boolean|surfaceshader|material)(?:[A-Z]+|_.*)?$|^ND_(\w+?)(?:_\d+)?$")
+TYPES = "float|color[34]|vector[234]|integer|boolean|surfaceshader|material"
+# Names of MaterialX's node definitions: ND_multiply_color3FA, ND_UsdTransform2d_23.
+TYPED = re.compile(rf"^ND_(.+?)_(?:{TYPES})(?:[A-Z]+|_.*)?$|^ND_(\w+?)(?:_\d+)?$")
 
 
 def category(shader: UsdShade.Shader) -> str:
@@ -37,7 +39,7 @@ class Network:
         """What an input comes to; `default` where nothing is said, or with a warning where it cannot be followed."""
         try:
             return self.follow(shader, name, default)
-        except Unsupported as unsupported:
+        except UnsupportedError as unsupported:
             self.report.warn(shader.GetPath(), f"{category(shader)}: {name!r} has its default: {unsupported}")
             return constant(default)
 
@@ -48,7 +50,7 @@ class Network:
             return self.evaluate(output)
         if value is None:
             if default is None:
-                raise Unsupported(f"the input {name!r} is missing")
+                raise UnsupportedError(f"the input {name!r} is missing")
             return constant(default)
         return self.number(value, shader.GetInput(name).GetAttr().GetColorSpace())
 
@@ -70,9 +72,9 @@ class Network:
         try:
             values = np.array(value, dtype=float).reshape(-1)
         except (TypeError, ValueError) as error:
-            raise Unsupported(f"{value!r} is no number") from error
+            raise UnsupportedError(f"{value!r} is no number") from error
         if not np.all(np.isfinite(values)):
-            raise Unsupported("a value is not finite")
+            raise UnsupportedError("a value is not finite")
         if space in ("srgb_texture", "sRGB") and len(values) >= 3:
             low = values[:3] / 12.92
             values[:3] = np.where(values[:3] <= 0.04045, low, ((np.maximum(values[:3], 0) + 0.055) / 1.055) ** 2.4)
@@ -86,9 +88,9 @@ class Network:
         name = category(shader)
         node = NODES.get(name)
         if node is None:
-            raise Unsupported(f"nodes {name or output.GetPrim().GetTypeName()!r} are not read")
+            raise UnsupportedError(f"nodes {name or output.GetPrim().GetTypeName()!r} are not read")
         if self.depth > DEEPEST:
-            raise Unsupported("a network that is too deep, or a loop")
+            raise UnsupportedError("a network that is too deep, or a loop")
         self.depth += 1
         try:
             return node(self, shader, output)
@@ -110,9 +112,9 @@ class Network:
         source = UsdShade.Shader(output.GetPrim())
         node = NODES.get(category(source))
         if node is None:
-            raise Unsupported(f"texture coordinates of nodes {category(source)!r} are not read")
+            raise UnsupportedError(f"texture coordinates of nodes {category(source)!r} are not read")
         if self.depth > DEEPEST:
-            raise Unsupported("a network that is too deep, or a loop")
+            raise UnsupportedError("a network that is too deep, or a loop")
         self.depth += 1
         try:
             return node(self, source)
@@ -145,5 +147,5 @@ def located(attribute: Usd.Attribute, asset: Sdf.AssetPath, jail: Jail, report: 
         report.warn(place, "of the tiles of a UDIM texture, only 1001 is read")
         jail.check(path, place)
     elif not asset.resolvedPath:
-        raise Unsupported(f"the file {asset.path} is not there")
+        raise UnsupportedError(f"the file {asset.path} is not there")
     return path

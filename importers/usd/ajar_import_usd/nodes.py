@@ -13,7 +13,7 @@ from .terms import (
     Component,
     Primvar,
     Term,
-    Unsupported,
+    UnsupportedError,
     computed,
     constant,
     is_constant,
@@ -52,7 +52,7 @@ def uv_texture(network: Network, shader: UsdShade.Shader, output: UsdShade.Outpu
             wrap_u=wrap(network.text(shader, "wrapS", "useMetadata")),
             wrap_v=wrap(network.text(shader, "wrapT", "useMetadata")),
         )
-    except Unsupported as unsupported:
+    except UnsupportedError as unsupported:
         if network.value(shader, "fallback")[0] is None:
             raise
         network.report.warn(shader.GetPath(), f"the texture has its fallback colour: {unsupported}")
@@ -72,7 +72,7 @@ def primvar_reader(network: Network, shader: UsdShade.Shader, output: UsdShade.O
     """UsdPrimvarReader and geompropvalue of colours: those of the mesh."""
     name = network.text(shader, "varname", "") or network.text(shader, "geomprop", "")
     if size(output) < 3 or not name:
-        raise Unsupported(f"the primvar {name!r} is no colour")
+        raise UnsupportedError(f"the primvar {name!r} is no colour")
     return source(Primvar(name), "rgb")
 
 
@@ -90,7 +90,7 @@ def image(network: Network, shader: UsdShade.Shader, output: UsdShade.Output) ->
             wrap_v=wrap(network.text(shader, "vaddressmode", "periodic")),
             filter="nearest" if nearest else "linear",
         )
-    except Unsupported:
+    except UnsupportedError:
         found = None
         if network.value(shader, "default")[0] is None:
             raise
@@ -114,7 +114,7 @@ def tiled(network: Network, shader: UsdShade.Shader, at: Any) -> Any:
     image_x, image_y = pair(network, shader, "realworldimagesize", 1.0)
     tile_x, tile_y = pair(network, shader, "realworldtilesize", 1.0)
     if not image_x or not image_y:
-        raise Unsupported("an image without size")
+        raise UnsupportedError("an image without size")
     return at.then(x, 0, -dx, 0, y, -dy).then(tile_x / image_x, 0, 0, 0, tile_y / image_y, 0)
 
 
@@ -156,7 +156,7 @@ def remap(network: Network, shader: UsdShade.Shader, output: UsdShade.Output) ->
     low, high = network.follow(shader, "inlow", 0.0), network.follow(shader, "inhigh", 1.0)
     out_low, out_high = network.follow(shader, "outlow", 0.0), network.follow(shader, "outhigh", 1.0)
     if any(v != 1 for v in numbers(network.follow(shader, "gamma", 1.0))):
-        raise Unsupported("a gamma")
+        raise UnsupportedError("a gamma")
     slope = computed(lambda a, b, c, d: (d - c) / (b - a), low, high, out_low, out_high)
     return total(product(total(network.follow(shader, "in", 0.0), low, -1), slope), out_low)
 
@@ -217,34 +217,36 @@ def reciprocal(term: Term) -> Term:
     return computed(lambda x: 1 / x, term)
 
 
-NODES: dict[str, Node] = {
-    "UsdUVTexture": uv_texture,
-    "UsdPrimvarReader_float3": primvar_reader,
-    "UsdPrimvarReader_float4": primvar_reader,
-    "UsdPrimvarReader": primvar_reader,
-    "geompropvalue": primvar_reader,
-    "image": image,
-    "tiledimage": image,
-    "constant": plain,
-    "dot": of_one(lambda term: term),
-    "multiply": of_two(product, 1.0),
-    "divide": of_two(lambda a, b: product(a, reciprocal(b)), 1.0),
-    "add": of_two(total, 0.0),
-    "subtract": of_two(lambda a, b: total(a, b, -1), 0.0),
-    "power": math_of(math.pow, "in1", "in2"),
-    "max": math_of(max, "in1", "in2"),
-    "min": math_of(min, "in1", "in2"),
-    "sqrt": math_of(math.sqrt, "in"),
-    "absval": math_of(abs, "in"),
-    "invert": of_one(lambda term: total(constant(1.0), term, -1)),
-    "mix": mix,
-    "remap": remap,
-    "range": remap,
-    "clamp": clamp,
-    "extract": extract,
-    "convert": convert,
-    "normalmap": normal_map,
-} | dict.fromkeys(["separate2", "separate3", "separate4"], separate) | dict.fromkeys(
-    ["combine2", "combine3", "combine4"], combine
+NODES: dict[str, Node] = (
+    {
+        "UsdUVTexture": uv_texture,
+        "UsdPrimvarReader_float3": primvar_reader,
+        "UsdPrimvarReader_float4": primvar_reader,
+        "UsdPrimvarReader": primvar_reader,
+        "geompropvalue": primvar_reader,
+        "image": image,
+        "tiledimage": image,
+        "constant": plain,
+        "dot": of_one(lambda term: term),
+        "multiply": of_two(product, 1.0),
+        "divide": of_two(lambda a, b: product(a, reciprocal(b)), 1.0),
+        "add": of_two(total, 0.0),
+        "subtract": of_two(lambda a, b: total(a, b, -1), 0.0),
+        "power": math_of(math.pow, "in1", "in2"),
+        "max": math_of(max, "in1", "in2"),
+        "min": math_of(min, "in1", "in2"),
+        "sqrt": math_of(math.sqrt, "in"),
+        "absval": math_of(abs, "in"),
+        "invert": of_one(lambda term: total(constant(1.0), term, -1)),
+        "mix": mix,
+        "remap": remap,
+        "range": remap,
+        "clamp": clamp,
+        "extract": extract,
+        "convert": convert,
+        "normalmap": normal_map,
+    }
+    | dict.fromkeys(["separate2", "separate3", "separate4"], separate)
+    | dict.fromkeys(["combine2", "combine3", "combine4"], combine)
 )
 """Who reads which node."""

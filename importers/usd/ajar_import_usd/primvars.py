@@ -81,18 +81,23 @@ def fitted(
     try:
         values = np.array(given, dtype=np.float32).reshape(-1, width)
     except (TypeError, ValueError):
-        return dropped(f"its values are not {width} numbers each")
+        dropped(f"its values are not {width} numbers each")
+        return None
     if not np.all(np.isfinite(values)):
-        return dropped("some of its values are not finite")
+        dropped("some of its values are not finite")
+        return None
     per = PER.get(interpolation)
     if per is None:
-        return dropped(f"interpolation {interpolation!r} is not known")
+        dropped(f"interpolation {interpolation!r} is not known")
+        return None
     order = None if indices is None else np.array(indices, dtype=np.int64)
     if order is not None and len(order) and (order.min() < 0 or order.max() >= len(values)):
-        return dropped(f"an index is beyond its {len(values)} values")
+        dropped(f"an index is beyond its {len(values)} values")
+        return None
     entries, wanted = len(values) if order is None else len(order), getattr(sizes, per)
     if entries != wanted:
-        return dropped(f"it has {entries} entries, {wanted} are needed for interpolation {interpolation!r}")
+        dropped(f"it has {entries} entries, {wanted} are needed for interpolation {interpolation!r}")
+        return None
     return Values(values, order, per)
 
 

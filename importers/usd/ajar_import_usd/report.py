@@ -17,12 +17,18 @@ NOISE = re.compile(r" \([a-z ]+ on stage @[^@]*@ <0x[0-9a-f]+>\)")
 USD_LINE = re.compile(r"^(?:Warning|Error|Coding Error|Runtime Error)[^:]*: in \S+ at line \d+ of \S+ -- (.*)$")
 
 
-class Failure(Exception):
+class StageError(Exception):
     """The import cannot go on. `cause` is what has to change: asset, usage, resource or system."""
 
     def __init__(self, message: str, place: str | None = None, hint: str | None = None, cause: str = "asset") -> None:
         super().__init__(message)
         self.message, self.place, self.hint, self.cause = message, place, hint, cause
+
+
+def commentary(error: Exception) -> str:
+    """What an exception of usd-core says first, with the line of the file."""
+    first = error.args[0] if error.args else error
+    return " ".join(str(getattr(first, "commentary", first)).split())
 
 
 class Report:
@@ -34,7 +40,9 @@ class Report:
 
     def say(self, **line: Any) -> None:
         """Prints the entries that are not None."""
-        print(json.dumps({key: value for key, value in line.items() if value is not None}), file=self.stream, flush=True)
+        print(
+            json.dumps({key: value for key, value in line.items() if value is not None}), file=self.stream, flush=True
+        )
 
     def warn(self, place: object, message: str, hint: str | None = None) -> None:
         """Something is approximated or dropped at `place`, mostly the path of a prim."""
@@ -44,7 +52,7 @@ class Report:
         """Something worth knowing."""
         self.say(level="note", message=message, place=str(place) if place else None)
 
-    def fail(self, failure: Failure) -> None:
+    def fail(self, failure: StageError) -> None:
         """The import failed."""
         self.say(
             level="error",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,7 +51,7 @@ def value(walk: Walk, prim: Usd.Prim, name: str) -> float:
     return float(prim.GetAttribute(name).Get(walk.time) or 0.0)
 
 
-def polygons(positions: np.ndarray, faces: list[tuple[int, ...]]) -> mesh.Topology:
+def polygons(positions: np.ndarray, faces: Sequence[tuple[int, ...]]) -> mesh.Topology:
     """Faces given by their corners."""
     corners = np.array([corner for face in faces for corner in face])
     return mesh.Topology(positions.astype(np.float32), np.array([len(face) for face in faces]), corners, None)

@@ -12,7 +12,7 @@ from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdSkel
 from . import mtlx
 from .document import Matrix
 from .layers import Jail
-from .report import Failure, Report
+from .report import Report, StageError, commentary
 
 DEFAULT_RATE = 24.0
 
@@ -37,28 +37,30 @@ class Opened:
         return matrix
 
 
-def open_stage(
-    file: Path, variants: list[str], frame: float | None, seconds: float | None, jail: Jail, report: Report
-) -> Opened:
+@dataclass(frozen=True)
+class Moment:
+    """When, as the user says it; nothing of it must be said."""
+
+    frame: float | None = None
+    seconds: float | None = None
+    # Frames per second, over what the stage says.
+    rate: float | None = None
+
+
+def open_stage(file: Path, variants: list[str], moment: Moment, jail: Jail, report: Report) -> Opened:
     """Composes the stage in `file`."""
     try:
         stage = Usd.Stage.Open(str(file))
     except Tf.ErrorException as error:
-        raise Failure(f"is no USD that can be read: {first_line(error)}") from error
+        raise StageError(f"is no USD that can be read: {commentary(error)}") from error
     stage.SetEditTarget(stage.GetSessionLayer())
     mtlx.resolve(stage, jail, report)
     for variant in variants:
         select(stage, variant)
-    time = time_code(stage, frame, seconds, report)
+    time = time_code(stage, moment, report)
     opened = Opened(stage, time, unit(stage, report), z_up(stage, report))
     bake_skins(stage, time)
     return opened
-
-
-def first_line(error: Exception) -> str:
-    """What a usd-core exception says, without the place in its source."""
-    text = str(error).strip().splitlines()[-1] if str(error).strip() else type(error).__name__
-    return text.split(" -- ")[-1].strip().strip("'")
 
 
 def select(stage: Usd.Stage, variant: str) -> None:
@@ -67,13 +69,13 @@ def select(stage: Usd.Stage, variant: str) -> None:
     name, is_set, choice = rest.partition("=")
     if not is_set or not Sdf.Path.IsValidPathString(path) or not Sdf.Path(path).IsAbsolutePath():
         hint = f"variants are written /Prim:set=choice; {available(stage)}"
-        raise Failure(f"the variant {variant!r} is none", hint=hint, cause="usage")
+        raise StageError(f"the variant {variant!r} is none", hint=hint, cause="usage")
     prim = stage.GetPrimAtPath(path)
     if not prim:
-        raise Failure(f"the variant {variant!r} is of no prim", hint=available(stage), cause="usage")
+        raise StageError(f"the variant {variant!r} is of no prim", hint=available(stage), cause="usage")
     chosen = prim.GetVariantSets().GetVariantSet(name)
     if choice not in chosen.GetVariantNames():
-        raise Failure(f"there is no variant {variant!r}", place=path, hint=available(stage), cause="usage")
+        raise StageError(f"there is no variant {variant!r}", place=path, hint=available(stage), cause="usage")
     chosen.SetVariantSelection(choice)
 
 
@@ -89,7 +91,7 @@ def available(stage: Usd.Stage) -> str:
     return f"there are {'; '.join(found[:10])}{more}" if found else "the stage has no variants"
 
 
-def time_code(stage: Usd.Stage, frame: float | None, seconds: float | None, report: Report) -> Usd.TimeCode:
+def time_code(stage: Usd.Stage, moment: Moment, report: Report) -> Usd.TimeCode:
     """The time that is asked for, else the start, else the first samples."""
     rate = stage.GetTimeCodesPerSecond()
     if not (math.isfinite(rate) and rate > 0):
@@ -98,11 +100,12 @@ def time_code(stage: Usd.Stage, frame: float | None, seconds: float | None, repo
     start, end = stage.GetStartTimeCode(), stage.GetEndTimeCode()
     if stage.HasAuthoredTimeCodeRange() and end < start:
         report.warn(None, f"endTimeCode {end:g} is before startTimeCode {start:g}")
-    if seconds is not None:
-        return Usd.TimeCode(seconds * rate)
-    if frame is not None:
-        played = stage.GetFramesPerSecond()
-        return Usd.TimeCode(frame * rate / played if played > 0 else frame)
+    if moment.seconds is not None:
+        return Usd.TimeCode(moment.seconds * rate)
+    if moment.frame is not None:
+        # Where nothing is said about frames, each is one time code.
+        played = moment.rate or (stage.GetFramesPerSecond() if stage.HasAuthoredMetadata("framesPerSecond") else rate)
+        return Usd.TimeCode(moment.frame * rate / played if played > 0 else moment.frame)
     if stage.HasAuthoredTimeCodeRange() and math.isfinite(start):
         return Usd.TimeCode(start)
     return Usd.TimeCode.EarliestTime()
@@ -120,7 +123,9 @@ def unit(stage: Usd.Stage, report: Report) -> float:
         other = layer.pseudoRoot.GetInfo(UsdGeom.Tokens.metersPerUnit)
         if layer.pseudoRoot.HasInfo(UsdGeom.Tokens.metersPerUnit) and not math.isclose(other, metres, rel_tol=1e-6):
             name = Path(layer.realPath or layer.identifier).name
-            report.warn(None, f"{name} is made in units of {other:g} m, the scene in {metres:g} m; USD does not rescale")
+            report.warn(
+                None, f"{name} is made in units of {other:g} m, the scene in {metres:g} m; USD does not rescale"
+            )
     return metres
 
 

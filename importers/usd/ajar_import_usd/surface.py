@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pxr import UsdShade
 
 from .network import category
-from .terms import Component, Image, Primvar, Term, Unsupported, constant, is_constant, numbers, product
+from .terms import Component, Image, Primvar, Term, UnsupportedError, constant, is_constant, numbers, product
 
 if TYPE_CHECKING:
     from .material import Materials
@@ -55,7 +55,7 @@ class Surface:
         """a · b, or a alone with a warning where both are images."""
         try:
             return product(a, b)
-        except Unsupported:
+        except UnsupportedError:
             self.warn(f"images of both {name!r} and {factor!r} cannot be multiplied; the second is taken as 1")
             return a
 
@@ -78,7 +78,7 @@ class Surface:
         """Names what cannot be said."""
         try:
             self.item[key] = make()
-        except Unsupported as unsupported:
+        except UnsupportedError as unsupported:
             self.warn(f"{key.replace('_', ' ')} has its default: {unsupported}")
 
     def scalar(self, key: str, component: Component, most: float) -> Any:
@@ -97,14 +97,14 @@ class Surface:
             return [self.limited(key, c.bias, most) for c in term]
         sources = {c.source for c in term if c.source is not None}
         if len(sources) > 1:
-            raise Unsupported("channels of several images")
+            raise UnsupportedError("channels of several images")
         (one,) = sources
         if isinstance(one, Primvar):
             return self.mesh_color(key, one, term)
         channels = [c.channel for c in term if c.source is not None]
         wanted = [CHANNELS[i] for i, c in enumerate(term) if c.source is not None]
         if channels != wanted and set(channels) != {"r"}:
-            raise Unsupported(f"channels in the order {''.join(channels)}")
+            raise UnsupportedError(f"channels in the order {''.join(channels)}")
         if channels != wanted:
             # Images of one channel are the same in all; of others it is approximated.
             self.materials.report.note(self.shader.GetPath(), f"{key}: one channel of an image, taken as grey")
@@ -115,14 +115,14 @@ class Surface:
     def mesh_color(self, key: str, primvar: Primvar, term: Term) -> list[float]:
         """The mesh's colours multiply the base colour, and nothing else."""
         if key != "base_color" or any(c.bias for c in term) or [c.channel for c in term] != list("rgb"):
-            raise Unsupported(f"the primvar {primvar.name!r} can only be the base colour")
+            raise UnsupportedError(f"the primvar {primvar.name!r} can only be the base colour")
         self.color_primvar = primvar.name
         return [self.limited(key, c.scale, 1.0) for c in term]
 
     def texture(self, image: Image | Primvar, scale: list[float], bias: list[float]) -> int:
         """A texture, whose coordinates meshes have to bring."""
         if isinstance(image, Primvar):
-            raise Unsupported(f"the primvar {image.name!r} can only be the base colour")
+            raise UnsupportedError(f"the primvar {image.name!r} can only be the base colour")
         self.uv_names.add(image.coordinates.primvar)
         return self.materials.texture(image, scale, bias)
 

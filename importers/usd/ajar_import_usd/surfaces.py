@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from .surface import Surface
-from .terms import Term, Unsupported, constant, is_constant, mixed, numbers
+from .terms import Term, UnsupportedError, constant, is_constant, mixed, numbers
 
 WHITE = (1.0, 1.0, 1.0)
 
@@ -116,7 +116,7 @@ def scattered(s: Surface, base: Term, share: float, color: Term) -> Term:
     s.warn("subsurface scattering is approximated by diffuse reflection")
     try:
         return mixed(base, color, constant(share))
-    except Unsupported:
+    except UnsupportedError:
         return color if share > 0.5 else base
 
 

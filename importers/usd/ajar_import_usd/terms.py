@@ -6,13 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 
-class Unsupported(Exception):
+class UnsupportedError(Exception):
     """Something that cannot be said with one image, a factor and an offset."""
 
 
 @dataclass(frozen=True)
 class Coordinates:
-    """Texture coordinates: a primvar's, then (u, v) → (a u + b v + x, c u + d v + y). The origin is at the bottom left."""
+    """Coordinates of a primvar, then (u, v) → (a u + b v + x, c u + d v + y). The origin is at the bottom left."""
 
     primvar: str = "st"
     matrix: tuple[float, float, float, float, float, float] = (1, 0, 0, 0, 1, 0)
@@ -85,7 +85,7 @@ def is_constant(term: Term) -> bool:
 def numbers(term: Term) -> list[float]:
     """The values of a constant."""
     if not is_constant(term):
-        raise Unsupported("an image where only a number can be")
+        raise UnsupportedError("an image where only a number can be")
     return [c.bias for c in term]
 
 
@@ -102,7 +102,7 @@ def product(a: Term, b: Term) -> Term:
         if x.source is None:
             x, y = y, x
         if y.source is not None:
-            raise Unsupported("a product of two images")
+            raise UnsupportedError("a product of two images")
         return x.scaled(y.bias)
 
     return tuple(each(x, y) for x, y in zip(*widened(a, b)))
@@ -118,7 +118,7 @@ def total(a: Term, b: Term, sign: float = 1.0) -> Term:
         if x.source is None:
             return y.scaled(1, x.bias)
         if (x.source, x.channel) != (y.source, y.channel):
-            raise Unsupported("a sum of two images")
+            raise UnsupportedError("a sum of two images")
         return replace(x, scale=x.scale + y.scale, bias=x.bias + y.bias)
 
     return tuple(each(x, y) for x, y in zip(*widened(a, b)))
@@ -136,4 +136,4 @@ def computed(function: Callable[..., float], *terms: Term) -> Term:
     try:
         return constant([function(*components) for components in zip(*values)])
     except (ArithmeticError, ValueError) as error:
-        raise Unsupported(f"a value that is none: {error}") from error
+        raise UnsupportedError(f"a value that is none: {error}") from error

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pxr import UsdShade
 
 from .network import Network
-from .terms import Coordinates, Unsupported, numbers
+from .terms import Coordinates, UnsupportedError, numbers
 
 
 def pair(network: Network, shader: UsdShade.Shader, name: str, default: float) -> tuple[float, float]:
@@ -51,7 +51,7 @@ def place2d(network: Network, shader: UsdShade.Shader) -> Coordinates:
     sx, sy = pair(network, shader, "scale", 1.0)
     dx, dy = pair(network, shader, "offset", 0.0)
     if not sx or not sy:
-        raise Unsupported("a scale of 0")
+        raise UnsupportedError("a scale of 0")
     degrees = numbers(network.follow(shader, "rotate", 0.0))[0]
     at = at.then(1, 0, -x, 0, 1, -y)
     if numbers(network.follow(shader, "operationorder", 0))[0]:
@@ -77,7 +77,7 @@ def scaled(power: float) -> Callable[[Network, UsdShade.Shader], Coordinates]:
     def node(network: Network, shader: UsdShade.Shader) -> Coordinates:
         x, y = pair(network, shader, "in2", 1.0)
         if power < 0 and not (x and y):
-            raise Unsupported("a division by 0")
+            raise UnsupportedError("a division by 0")
         return network.coordinates(shader, "in1").then(x**power, 0, 0, 0, y**power, 0)
 
     return node

@@ -11,7 +11,7 @@ from . import camera, curves, instancer, lights, mesh, points, settings, shapes
 from .document import Document, Matrix, Node
 from .layers import Jail
 from .material import Materials
-from .report import Failure, Report
+from .report import Report, StageError
 from .stage import Opened
 
 DEEPEST = 1000
@@ -67,7 +67,7 @@ class Walk:
     def node(self, prim: Usd.Prim, depth: int) -> Node | None:
         """The tree below a prim, if there is something to be seen of it."""
         if depth > DEEPEST:
-            raise Failure(f"prims are nested more than {DEEPEST} deep", str(prim.GetPath()))
+            raise StageError(f"prims are nested more than {DEEPEST} deep", str(prim.GetPath()))
         self.seen += 1
         if self.seen % STEP == 0:
             self.report.progress(f"{self.seen} prims")
@@ -76,7 +76,13 @@ class Walk:
         node = Node(prim.GetName())
         is_detached = self.set_transform(prim, node)
         if prim.IsInstance():
-            node.children = self.prototype(prim, depth)
+            shown = self.prototype(prim, depth)
+            node.meshes, node.light, node.camera, node.children = (
+                shown.meshes,
+                shown.light,
+                shown.camera,
+                shown.children,
+            )
         else:
             self.fill(prim, node, depth)
         if node.is_empty:
@@ -108,7 +114,7 @@ class Walk:
             node.transform = matrix
         return bool(xformable.GetResetXformStack())
 
-    def prototype(self, prim: Usd.Prim, depth: int) -> list[Node]:
+    def prototype(self, prim: Usd.Prim, depth: int) -> Node:
         """What an instance shows; those that share prototype and bound material share the tree."""
         bound = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
         key = (prim.GetPrototype().GetPath(), bound.GetPath() if bound else None)
@@ -120,8 +126,8 @@ class Walk:
             if not self.top:
                 self.prototypes[key] = holder
             self.top = top + self.top
-            return holder.children
-        return self.prototypes[key].children
+            return holder
+        return self.prototypes[key]
 
     def fill(self, prim: Usd.Prim, node: Node, depth: int) -> None:
         """Adds what the prim is, and all below."""
