@@ -16,7 +16,8 @@ pub(super) struct Accessor<'a> {
     /// Type of the components.
     pub kind: ComponentType,
     normalized: bool,
-    width: usize,
+    /// Numbers of an element.
+    pub width: usize,
     dense: Option<Elements<'a>>,
     /// Elements that are replaced, increasing, each with its place in what replaces them.
     sparse: Option<(Vec<(u32, u32)>, Elements<'a>)>,
@@ -75,6 +76,8 @@ impl<'a> Accessor<'a> {
             return Err(error(".componentType", "unknown component type".into()));
         };
         let width = match accessor.type_ {
+            // Others have columns of padded length.
+            Checked::Valid(Type::Mat4) if kind.0 == ComponentType::F32 => 16,
             Checked::Valid(Type::Mat2 | Type::Mat3 | Type::Mat4) | Checked::Invalid => 0,
             Checked::Valid(vector) => vector.multiplicity(),
         };

@@ -1,14 +1,18 @@
 //! Vertex attributes, gathered for the vertices in use and repaired where a shading value is not what it must be.
 
 use ajar_scene::{Diagnostic, Mesh};
-use glam::{DVec3, Vec2, Vec3, Vec4};
+use glam::{DAffine3, DVec3, Vec2, Vec3, Vec4};
 use gltf::json::{
     accessor::ComponentType,
     mesh::{Primitive, Semantic},
     validation::Checked,
 };
 
-use super::{Asset, Context, accessor::Accessor};
+use super::{
+    Asset, Context,
+    accessor::Accessor,
+    deform::{self, Shape},
+};
 
 /// How far a length may be from 1 without a word: 8-bit normals are off by less.
 const UNIT_TOLERANCE: f64 = 0.02;
@@ -25,6 +29,8 @@ pub(super) struct Vertices<'a> {
     pub used: &'a [u32],
     /// Elements that every attribute's accessor must have.
     pub count: u32,
+    /// How they are moved.
+    pub shape: &'a Shape,
 }
 
 impl Vertices<'_> {
@@ -40,16 +46,29 @@ impl Vertices<'_> {
     ) -> Result<Mesh, Diagnostic> {
         let name = self.path("POSITION");
         self.prepare(context, positions, 3, &name)?;
-        let positions: Vec<_> = self.used.iter().map(|&i| Vec3::from(positions.get(i, 0.0))).collect();
+        let mut positions: Vec<_> = self.used.iter().map(|&i| Vec3::from(positions.get(i, 0.0))).collect();
+        deform::morph(self, context, ("POSITION", |target| target.positions), &mut positions)?;
+        let skin = deform::skin(self, context)?;
+        if let Some(skin) = &skin {
+            for (position, place) in positions.iter_mut().zip(skin) {
+                *position = place.transform_point3(position.as_dvec3()).as_vec3();
+            }
+        }
         if let Some(at) = positions.iter().position(|position| !position.is_finite()) {
             let vertex = self.used.get(at).copied().unwrap_or_default();
             return Err(Diagnostic::error("the position is not finite").element(format!("{name}[{vertex}]")));
         }
-        let normals = self.normals(context, &positions, &triangles)?;
-        let tangents = self.tangents(context, normals.is_some())?;
+        let skin = skin.as_deref();
+        let normals = self.normals(context, &positions, &triangles, skin)?;
+        let tangents = self.tangents(context, normals.is_some(), skin)?;
         let uvs = self.uvs(context)?;
         let colors = self.colors(context)?;
         Ok(Mesh { positions, triangles, normals, tangents, uvs, colors, ..Mesh::default() })
+    }
+
+    /// Whether nothing bends the mesh, so that what is wrong with its vertices is so in the file.
+    fn as_written(&self) -> bool {
+        self.shape.weights.is_empty() && self.shape.joints.is_none()
     }
 
     fn path(&self, name: &str) -> String {
@@ -57,7 +76,7 @@ impl Vertices<'_> {
     }
 
     /// The accessor of an attribute; `None`, with a warning, if its length does not fit.
-    fn accessor(
+    pub fn accessor(
         &self,
         context: &mut Context,
         semantic: Semantic,
@@ -98,18 +117,23 @@ impl Vertices<'_> {
         context: &mut Context,
         positions: &[Vec3],
         triangles: &[[u32; 3]],
+        skin: Option<&[DAffine3]>,
     ) -> Result<Option<Vec<Vec3>>, Diagnostic> {
         let name = self.path("NORMAL");
         let Some(accessor) = self.accessor(context, Semantic::Normals, &name, &[3])? else { return Ok(None) };
+        let mut normals: Vec<_> = self.used.iter().map(|&i| Vec3::from(accessor.get(i, 0.0))).collect();
+        deform::morph(self, context, ("NORMAL", |target| target.normals), &mut normals)?;
+        for (normal, place) in normals.iter_mut().zip(skin.into_iter().flatten()) {
+            *normal = (deform::for_normals(place) * normal.as_dvec3()).as_vec3();
+        }
         let (mut long, mut degenerate) = (false, false);
-        let mut normals = Vec::with_capacity(self.used.len());
-        for &i in self.used {
-            let found = unit(Vec3::from(accessor.get(i, 0.0)));
+        for normal in &mut normals {
+            let found = unit(*normal);
             long |= found.is_some_and(|(_, length)| (length - 1.0).abs() > UNIT_TOLERANCE);
             degenerate |= found.is_none();
-            normals.push(found.map_or(Vec3::ZERO, |(normal, _)| normal));
+            *normal = found.map_or(Vec3::ZERO, |(normal, _)| normal);
         }
-        if long {
+        if long && self.as_written() {
             context.report.warn(&name, "normals are not of unit length; they are normalized");
         }
         if degenerate {
@@ -122,7 +146,12 @@ impl Vertices<'_> {
     }
 
     /// Unit tangents with a sign. They mean nothing without normals; degenerate ones are left to be computed anew.
-    fn tangents(&self, context: &mut Context, with_normals: bool) -> Result<Option<Vec<Vec4>>, Diagnostic> {
+    fn tangents(
+        &self,
+        context: &mut Context,
+        with_normals: bool,
+        skin: Option<&[DAffine3]>,
+    ) -> Result<Option<Vec<Vec4>>, Diagnostic> {
         let name = self.path("TANGENT");
         if !with_normals {
             if self.primitive.attributes.contains_key(&Checked::Valid(Semantic::Tangents)) {
@@ -133,18 +162,23 @@ impl Vertices<'_> {
         let Some(accessor) = self.accessor(context, Semantic::Tangents, &name, &[4])? else {
             return Ok(None);
         };
+        let mut directions: Vec<_> = self.used.iter().map(|&i| Vec3::from(accessor.get(i, 0.0))).collect();
+        deform::morph(self, context, ("TANGENT", |target| target.tangents), &mut directions)?;
+        for (direction, place) in directions.iter_mut().zip(skin.into_iter().flatten()) {
+            *direction = place.transform_vector3(direction.as_dvec3()).as_vec3();
+        }
         let mut sloppy = false;
         let mut tangents = Vec::with_capacity(self.used.len());
-        for &i in self.used {
-            let found = Vec4::from(accessor.get(i, 0.0));
-            let Some((tangent, length)) = unit(found.truncate()).filter(|_| found.w.abs() > 0.0) else {
+        for (&i, direction) in self.used.iter().zip(directions) {
+            let [.., sign] = accessor.get::<4>(i, 0.0);
+            let Some((tangent, length)) = unit(direction).filter(|_| sign.abs() > 0.0) else {
                 context.report.warn(&name, "tangents are zero or not finite; they are computed anew");
                 return Ok(None);
             };
-            sloppy |= (length - 1.0).abs() > UNIT_TOLERANCE || found.w.abs() != 1.0;
-            tangents.push(tangent.extend(found.w.signum()));
+            sloppy |= (length - 1.0).abs() > UNIT_TOLERANCE || sign.abs() != 1.0;
+            tangents.push(tangent.extend(sign.signum()));
         }
-        if sloppy {
+        if sloppy && self.as_written() {
             context
                 .report
                 .warn(&name, "tangents are not of unit length with a sign of ±1; they are normalized");

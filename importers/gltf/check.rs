@@ -61,7 +61,15 @@ fn primitives(root: &Root) -> Result<(), Diagnostic> {
 }
 
 fn nodes(root: &Root) -> Result<(), Diagnostic> {
+    for (i, skin) in root.skins.iter().enumerate() {
+        for (j, joint) in skin.joints.iter().enumerate() {
+            at(&root.nodes, joint.value(), "nodes", &format!("skins[{i}].joints[{j}]"))?;
+        }
+    }
     for (i, node) in root.nodes.iter().enumerate() {
+        if let Some(skin) = node.skin {
+            at(&root.skins, skin.value(), "skins", &format!("nodes[{i}].skin"))?;
+        }
         if let Some(mesh) = node.mesh {
             at(&root.meshes, mesh.value(), "meshes", &format!("nodes[{i}].mesh"))?;
         }

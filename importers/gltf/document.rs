@@ -1,7 +1,6 @@
 //! From JSON text to the crate's types, with the place of what does not fit.
 //!
-//! Animations and skins are taken out first: they are not used yet, and `gltf-json` 1.4.1 cannot read the targets of
-//! KHR_animation_pointer. It also wants `nodes` in every scene, which the specification does not, and `attributes` in
+//! Animations are taken out: `gltf-json` 1.4.1 cannot read the targets of KHR_animation_pointer. It also wants `nodes` in every scene, which the specification does not, and `attributes` in
 //! every primitive, which only costs that primitive here.
 
 use ajar_scene::Diagnostic;
@@ -11,31 +10,64 @@ use serde_json::{Map, Value};
 use super::{container, extensions};
 use crate::report::Report;
 
-/// The document and the binary chunk of a file.
-pub(super) fn parse(file: Vec<u8>, report: &mut Report) -> Result<(Root, Option<Vec<u8>>), Diagnostic> {
+/// A file taken apart.
+pub(super) struct Document {
+    /// The JSON but for the animations, ready for [`root`].
+    pub json: Map<String, Value>,
+    pub animations: Vec<Value>,
+    /// The binary chunk.
+    pub binary: Option<Vec<u8>>,
+}
+
+/// Takes a file apart.
+///
+/// # Errors
+/// No glTF 2, or an extension is required that is not supported.
+pub(super) fn parse(file: Vec<u8>, report: &mut Report) -> Result<Document, Diagnostic> {
     let container = container::split(file, report)?;
-    let mut document = json(&container)?;
-    version(&document)?;
-    extensions::check(&document, report)?;
-    for (list, what) in [("animations", "animations are ignored"), ("skins", "skins are ignored")] {
-        if document.remove(list).is_some_and(|v| v.as_array().is_some_and(|items| !items.is_empty())) {
-            report.warn(list, format!("{what}; the scene is shown in its rest pose"));
-        }
-    }
-    for scene in objects(document.get_mut("scenes")) {
+    let mut json = json(&container)?;
+    version(&json)?;
+    extensions::check(&json, report)?;
+    let animations = match json.remove("animations") {
+        Some(Value::Array(animations)) => animations,
+        _ => Vec::new(),
+    };
+    for scene in objects(json.get_mut("scenes")) {
         scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
     }
-    for mesh in objects(document.get_mut("meshes")) {
+    for skin in objects(json.get_mut("skins")) {
+        skin.entry("joints").or_insert_with(|| Value::Array(Vec::new()));
+    }
+    for mesh in objects(json.get_mut("meshes")) {
         for primitive in objects(mesh.get_mut("primitives")) {
             primitive.entry("attributes").or_insert_with(|| Value::Object(Map::new()));
+            check_targets(primitive, report);
         }
     }
-    let root = serde_path_to_error::deserialize(Value::Object(document)).map_err(|error| {
+    Ok(Document { json, animations, binary: container.binary })
+}
+
+/// Warns about morph targets of attributes that the crate's type has not.
+fn check_targets(primitive: &mut Map<String, Value>, report: &mut Report) {
+    let known = ["POSITION", "NORMAL", "TANGENT"];
+    let names =
+        objects(primitive.get_mut("targets")).flat_map(|target| target.keys().cloned().collect::<Vec<_>>());
+    for name in names.filter(|name| !known.contains(&name.as_str())) {
+        let message = format!("morph targets of {} are dropped", name.escape_debug());
+        report.warn("meshes", message);
+    }
+}
+
+/// The JSON in the crate's types.
+///
+/// # Errors
+/// Names the element that does not fit.
+pub(super) fn root(json: Map<String, Value>) -> Result<Root, Diagnostic> {
+    serde_path_to_error::deserialize(Value::Object(json)).map_err(|error| {
         let path = error.path().to_string();
         let found = Diagnostic::error(error.into_inner().to_string());
         if path == "." { found } else { found.element(path) }
-    })?;
-    Ok((root, container.binary))
+    })
 }
 
 /// The objects in a list.

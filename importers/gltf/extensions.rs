@@ -20,8 +20,20 @@ pub const FEATURES: &[Feature] = &[
     Feature { name: "textures", support: "PNG, JPEG, WebP; all wrapping modes and sets; KTX2 is dropped" },
     Feature { name: "cameras", support: "perspective, orthographic; clipping planes are ignored" },
     Feature { name: "scenes", support: "the default scene, else the first, else all nodes" },
-    Feature { name: "animations, skins, morph targets", support: "ignored, the rest pose is shown" },
+    Feature {
+        name: "animations",
+        support: "at a moment, all interpolations; of several that move the same thing the first counts",
+    },
+    Feature {
+        name: "skins, morph targets",
+        support: "full, but morph targets of texture coordinates and colours",
+    },
+    Feature { name: "EXT_mesh_gpu_instancing", support: "full; attributes of applications are ignored" },
     Feature { name: "EXT_texture_webp", support: "full" },
+    Feature {
+        name: "KHR_animation_pointer",
+        support: "nodes, visibility, materials, lights, cameras, morph weights; others are dropped",
+    },
     Feature { name: "KHR_lights_punctual", support: "full, but range is ignored" },
     Feature {
         name: "KHR_materials_anisotropy",
@@ -30,10 +42,14 @@ pub const FEATURES: &[Feature] = &[
     Feature { name: "KHR_materials_clearcoat", support: "full, but the coat's normal map is dropped" },
     Feature { name: "KHR_materials_emissive_strength", support: "full" },
     Feature { name: "KHR_materials_ior", support: "full; the special value 0 is approximated" },
+    Feature {
+        name: "KHR_materials_pbrSpecularGlossiness",
+        support: "full; reflection towards grazing is Schlick's where the specular texture is dark",
+    },
     Feature { name: "KHR_materials_specular", support: "full" },
     Feature { name: "KHR_materials_transmission", support: "full" },
     Feature { name: "KHR_materials_unlit", support: "full" },
-    Feature { name: "KHR_materials_variants", support: "the default materials; others cannot be chosen" },
+    Feature { name: "KHR_materials_variants", support: "full: --variant NAME, or variant = in a scene file" },
     Feature {
         name: "KHR_materials_volume",
         support: "full; the thickness texture is ignored, as is meant for ray tracers",
@@ -45,19 +61,16 @@ pub const FEATURES: &[Feature] = &[
 ];
 
 /// What is lost with extensions that are not supported, for the message.
-const LOSSES: [(&str, &str); 24] = [
+const LOSSES: [(&str, &str); 21] = [
     ("EXT_lights_image_based", "the surrounding light is missing"),
-    ("EXT_mesh_gpu_instancing", "the instances are missing, the mesh is shown once"),
     ("EXT_meshopt_compression", "the uncompressed fallback is read where there is one"),
     ("GOOGLE_texture_basis", "its textures are dropped"),
-    ("KHR_animation_pointer", "its animations are ignored"),
     ("KHR_draco_mesh_compression", "the uncompressed fallback is read where there is one"),
     ("KHR_materials_coat", "its coat is missing"),
     ("KHR_materials_diffuse_roughness", "diffuse reflection is Lambert's"),
     ("KHR_materials_diffuse_transmission", "no light comes through diffusely"),
     ("KHR_materials_dispersion", "refraction does not depend on the wavelength"),
     ("KHR_materials_iridescence", "the thin film is missing"),
-    ("KHR_materials_pbrSpecularGlossiness", "the metallic-roughness fallback is shown"),
     ("KHR_materials_sheen", "the sheen is missing"),
     ("KHR_materials_volume_scatter", "nothing is scattered inside volumes"),
     ("KHR_meshopt_compression", "the uncompressed fallback is read where there is one"),
@@ -105,9 +118,7 @@ pub(super) fn check(document: &Map<String, Value>, report: &mut Report) -> Resul
         used.entry(name).or_insert_with(|| format!("extensionsUsed[{i}]"));
     }
     for (name, element) in used {
-        if name == "KHR_materials_variants" {
-            report.warn(element, "variants cannot be chosen, the default materials are shown");
-        } else if !is_supported(&name) {
+        if !is_supported(&name) {
             let loss = LOSSES.iter().find(|(known, _)| *known == name);
             let loss = loss.map_or("what it adds is missing", |(_, loss)| loss);
             report.warn(element, format!("{} is not supported: {loss}", name.escape_debug()));

@@ -136,10 +136,7 @@ fn specular(reader: &mut Reader, material: &mut Material) -> Result<(), Diagnost
 /// Colours above 1 raise the reflectance at normal incidence F₀ = ((n − 1) / (n + 1))². The same reflection comes from a
 /// higher index and a colour within 1; only refraction tells them apart.
 fn raise_index(reader: &mut Reader, material: &mut Material, brightest: f32) {
-    let normal = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
-    let mirror = ((MIRROR_IOR - 1.0) / (MIRROR_IOR + 1.0)).powi(2);
-    let root = (normal * brightest).min(mirror).sqrt();
-    material.ior = (1.0 + root) / (1.0 - root);
+    material.ior = index_of(reflectance(material.ior) * brightest);
     material.specular_color.value /= brightest;
     if material.transmission.value > 0.0 {
         let element = format!("{}.extensions.KHR_materials_specular.specularColorFactor", reader.element);
@@ -148,6 +145,17 @@ fn raise_index(reader: &mut Reader, material: &mut Material, brightest: f32) {
             .report
             .warn(element, "a colour above 1 is approximated by a higher index of refraction");
     }
+}
+
+/// What a boundary of this index reflects at normal incidence.
+fn reflectance(ior: f32) -> f32 {
+    ((ior - 1.0) / (ior + 1.0)).powi(2)
+}
+
+/// The index of refraction that reflects this much at normal incidence.
+pub(super) fn index_of(normal: f32) -> f32 {
+    let root = normal.min(reflectance(MIRROR_IOR)).sqrt();
+    (1.0 + root) / (1.0 - root)
 }
 
 fn clearcoat(reader: &mut Reader, material: &mut Material) -> Result<(), Diagnostic> {

@@ -4,13 +4,13 @@
 use ajar_scene::{
     AlphaMode, Channel, ColorSpace, Diagnostic, Id, Input, Material, NormalMap, Scene, Texture, TextureInput,
 };
-use glam::Vec3;
-use gltf::json::{self, validation::Checked};
+use glam::{Vec3, Vec4};
+use gltf::json::{self, material::PbrMetallicRoughness, validation::Checked};
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 
 use super::{
-    Asset, Context, extensions, layers,
+    Asset, Context, extensions, gloss, layers,
     texture::{TextureInfo, Textures},
 };
 
@@ -95,7 +95,38 @@ impl<'a, 'b> Reader<'a, 'b> {
     }
 
     fn material(mut self, source: &json::Material) -> Result<Material, Diagnostic> {
-        let surface = &source.pbr_metallic_roughness;
+        let (base, alpha) = match gloss::read(&mut self)? {
+            Some(base) => base,
+            None => self.metallic_roughness(&source.pbr_metallic_roughness)?,
+        };
+        if source.occlusion_texture.is_some() {
+            let element = format!("{}.occlusionTexture", self.element);
+            self.context.report.note(element, "occlusion is ignored, light transport computes it");
+        }
+        let alpha_mode = self.alpha_mode(source);
+        let opacity = match alpha_mode {
+            AlphaMode::Opaque => Input::constant(1.0),
+            AlphaMode::Mask(_) | AlphaMode::Blend => {
+                scalar(alpha, base.base_color.texture.map(|input| input.texture), Channel::A)
+            }
+        };
+        let mut material = Material {
+            name: source.name.clone().unwrap_or_else(|| self.element.clone()),
+            emission: self.emission(source)?,
+            double_sided: source.double_sided,
+            cull_back: !source.double_sided,
+            opacity,
+            alpha_mode,
+            normal_map: self.normal_map(source)?,
+            unlit: self.extensions.contains_key("KHR_materials_unlit"),
+            ..base
+        };
+        layers::add(&mut self, &mut material)?;
+        Ok(material)
+    }
+
+    /// The base of a material, and its alpha.
+    fn metallic_roughness(&mut self, surface: &PbrMetallicRoughness) -> Result<(Material, f32), Diagnostic> {
         let [r, g, b, alpha] = surface.base_color_factor.0;
         let info = surface.base_color_texture.as_ref().map(TextureInfo::from);
         let field = "pbrMetallicRoughness.baseColorFactor";
@@ -106,33 +137,9 @@ impl<'a, 'b> Reader<'a, 'b> {
         let map = self.texture(info, ColorSpace::Raw, "pbrMetallicRoughness.metallicRoughnessTexture")?;
         let metallic = self.unit(surface.metallic_factor.0, "pbrMetallicRoughness.metallicFactor");
         let roughness = self.unit(surface.roughness_factor.0, "pbrMetallicRoughness.roughnessFactor");
-        if source.occlusion_texture.is_some() {
-            let element = format!("{}.occlusionTexture", self.element);
-            self.context.report.note(element, "occlusion is ignored, light transport computes it");
-        }
-        let alpha_mode = self.alpha_mode(source);
-        let opacity = match alpha_mode {
-            AlphaMode::Opaque => Input::constant(1.0),
-            AlphaMode::Mask(_) | AlphaMode::Blend => {
-                scalar(alpha, base_color.texture.map(|input| input.texture), Channel::A)
-            }
-        };
-        let mut material = Material {
-            name: source.name.clone().unwrap_or_else(|| self.element.clone()),
-            base_color,
-            metallic: scalar(metallic, map, Channel::B),
-            roughness: scalar(roughness, map, Channel::G),
-            emission: self.emission(source)?,
-            double_sided: source.double_sided,
-            cull_back: !source.double_sided,
-            opacity,
-            alpha_mode,
-            normal_map: self.normal_map(source)?,
-            unlit: self.extensions.contains_key("KHR_materials_unlit"),
-            ..Material::default()
-        };
-        layers::add(&mut self, &mut material)?;
-        Ok(material)
+        let metallic = scalar(metallic, map, Channel::B);
+        let roughness = scalar(roughness, map, Channel::G);
+        Ok((Material { base_color, metallic, roughness, ..Material::default() }, alpha))
     }
 
     fn alpha_mode(&mut self, source: &json::Material) -> AlphaMode {
@@ -200,6 +207,12 @@ impl<'a, 'b> Reader<'a, 'b> {
         let Some(info) = info else { return Ok(None) };
         let element = format!("{}.{field}", self.element);
         self.textures.get(self.asset, self.context, self.scene, &info, color_space, &element)
+    }
+
+    /// The same texture with its values scaled, then raised.
+    pub fn scaled(&mut self, texture: Id<Texture>, scale: Vec4, bias: Vec4) -> Id<Texture> {
+        let texture = Texture { scale, bias, ..self.scene.textures[texture].clone() };
+        self.scene.textures.push(texture)
     }
 
     /// A colour with an sRGB texture.

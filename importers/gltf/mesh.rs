@@ -1,38 +1,92 @@
 //! Meshes: each primitive that makes triangles becomes one mesh.
 
 use ajar_scene::{Diagnostic, Id, Mesh, Scene};
+use glam::DAffine3;
 use gltf::json::{
     accessor::ComponentType,
     mesh::{Mode, Primitive, Semantic},
     validation::Checked,
 };
 
-use super::{Asset, Context, accessor::Accessor, attributes::Vertices, material::Materials, topology};
+use super::{
+    Asset, Context, accessor::Accessor, at, attributes::Vertices, deform::Shape, material::Materials,
+    topology, variants::Variants,
+};
 
 /// Bytes that one corner costs while its triangle is made: the corner, the triangle, and the renumbering.
 const CORNER: u64 = 4 + 12 + 16;
 
-/// Makes the meshes of all `meshes[i]`, in file order.
-pub(super) fn meshes(
-    asset: &Asset,
-    context: &mut Context,
-    scene: &mut Scene,
-    materials: &Materials,
-) -> Result<Vec<Vec<Id<Mesh>>>, Diagnostic> {
-    let mut all = Vec::with_capacity(asset.root.meshes.len());
-    for (i, mesh) in asset.root.meshes.iter().enumerate() {
-        let name = mesh.name.clone().unwrap_or_else(|| format!("meshes[{i}]"));
+/// Makes meshes.
+pub(super) struct Maker<'a> {
+    pub asset: &'a Asset,
+    pub materials: Materials,
+    pub variants: Variants,
+    /// From each node's space to the file's.
+    pub globals: &'a [DAffine3],
+}
+
+impl Maker<'_> {
+    /// The meshes of each node. Nodes share them unless one bends them its own way; meshes that no node places are made
+    /// too.
+    ///
+    /// # Errors
+    /// A mesh or skin is broken, or memory runs out.
+    pub fn meshes(&self, context: &mut Context, scene: &mut Scene) -> Result<Vec<Vec<Id<Mesh>>>, Diagnostic> {
+        let root = &self.asset.root;
+        let mut is_shared = vec![true; root.meshes.len()];
+        let (own, plain): (Vec<_>, Vec<_>) = root.nodes.iter().partition(|node| Shape::is_own(root, node));
+        for (nodes, shared) in [(own, false), (plain, true)] {
+            for mesh in nodes.iter().filter_map(|node| node.mesh) {
+                if let Some(is_shared) = is_shared.get_mut(mesh.value()) {
+                    *is_shared = shared;
+                }
+            }
+        }
+        let mut shared = Vec::with_capacity(root.meshes.len());
+        for (i, (mesh, is_shared)) in root.meshes.iter().zip(is_shared).enumerate() {
+            let shape = Shape { weights: mesh.weights.clone().unwrap_or_default(), joints: None };
+            shared.push(if is_shared { self.mesh(i, &shape, context, scene)? } else { Vec::new() });
+        }
+        let mut all = Vec::with_capacity(root.nodes.len());
+        for (i, node) in root.nodes.iter().enumerate() {
+            let Some(mesh) = node.mesh.map(|mesh| mesh.value()) else {
+                all.push(Vec::new());
+                continue;
+            };
+            all.push(if Shape::is_own(root, node) {
+                let shape = Shape::of(i, self.asset, context, self.globals)?;
+                self.mesh(mesh, &shape, context, scene)?
+            } else {
+                shared.get(mesh).cloned().unwrap_or_default()
+            });
+        }
+        Ok(all)
+    }
+
+    /// The meshes of the primitives of `meshes[index]`.
+    fn mesh(
+        &self,
+        index: usize,
+        shape: &Shape,
+        context: &mut Context,
+        scene: &mut Scene,
+    ) -> Result<Vec<Id<Mesh>>, Diagnostic> {
+        let mesh = at(&self.asset.root.meshes, index, "meshes", "nodes")?;
+        let name = mesh.name.clone().unwrap_or_else(|| format!("meshes[{index}]"));
         let mut made = Vec::new();
         for (j, primitive) in mesh.primitives.iter().enumerate() {
-            let element = format!("meshes[{i}].primitives[{j}]");
-            let material = materials.of(primitive.material.map(|index| index.value()));
-            if let Some(mesh) = self::primitive(asset, context, primitive, &element)? {
+            let element = format!("meshes[{index}].primitives[{j}]");
+            let material = self.variants.material(primitive, context, &element);
+            if let Some(material) = material {
+                at(&self.asset.root.materials, material, "materials", &element)?;
+            }
+            let material = self.materials.of(material);
+            if let Some(mesh) = self::primitive(self.asset, context, primitive, shape, &element)? {
                 made.push(scene.meshes.push(Mesh { name: name.clone(), material, ..mesh }));
             }
         }
-        all.push(made);
+        Ok(made)
     }
-    Ok(all)
 }
 
 /// The mesh of a primitive, without name and material; `None`, with a warning, where it has no triangles.
@@ -40,6 +94,7 @@ fn primitive(
     asset: &Asset,
     context: &mut Context,
     primitive: &Primitive,
+    shape: &Shape,
     element: &str,
 ) -> Result<Option<Mesh>, Diagnostic> {
     let mode = match primitive.mode {
@@ -51,11 +106,6 @@ fn primitive(
         }
         Checked::Invalid => return Err(Diagnostic::error("unknown mode").element(format!("{element}.mode"))),
     };
-    if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
-        context
-            .report
-            .warn(format!("{element}.targets"), "morph targets are ignored, the base shape is shown");
-    }
     let Some(index) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
         context.report.warn(element, "the primitive has no POSITION and is dropped");
         return Ok(None);
@@ -72,7 +122,7 @@ fn primitive(
         return Ok(None);
     }
     let used = topology::compact(&mut triangles, positions.count);
-    let vertices = Vertices { asset, primitive, element, used: &used, count: positions.count };
+    let vertices = Vertices { asset, primitive, element, used: &used, count: positions.count, shape };
     vertices.mesh(context, &positions, triangles).map(Some)
 }
 

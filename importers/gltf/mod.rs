@@ -5,19 +5,23 @@
 //! here, since the crate's own reader refuses required extensions it does not know, and its accessors trust the file.
 //!
 //! The way of a file: `container` splits a GLB, `document` turns JSON into the crate's types, `check` proves that
-//! indices point to something and nodes form trees, `buffers` and `accessor` give numbers, and `mesh`, `material`,
-//! `light`, `camera` and `node` make the scene. Meshes are split into one mesh per primitive; nodes keep their
-//! indices.
+//! indices point to something and nodes form trees, `buffers` and `accessor` give numbers, `animation` writes what moves
+//! into the JSON, and `mesh`, `material`, `light`, `camera` and `node` make the scene. Meshes are split into one mesh per
+//! primitive; nodes keep their indices, and those of `instances` follow.
 
 mod accessor;
+mod animation;
 mod attributes;
 mod buffers;
 mod camera;
 mod check;
 mod container;
+mod deform;
 mod document;
 mod extensions;
+mod gloss;
 mod image;
+mod instances;
 mod layers;
 mod light;
 mod material;
@@ -26,10 +30,11 @@ mod node;
 mod texture;
 mod topology;
 mod uri;
+mod variants;
 
 use std::{collections::HashSet, path::PathBuf};
 
-use ajar_scene::{Cause, Diagnostic, Feature, ImportRequest, Imported, Importer, Scene};
+use ajar_scene::{Cause, Choice, Diagnostic, Feature, ImportRequest, Imported, Importer, Scene};
 use gltf::json::Root;
 
 use crate::report::Report;
@@ -107,7 +112,6 @@ impl<'a> Context<'a> {
 }
 
 fn read(request: &ImportRequest) -> Result<Imported, Diagnostic> {
-    request.refuse_variants()?;
     let mut context = Context::new(request);
     let file = uri::read_file(&request.path, &mut context, "the file").map_err(|mut error| {
         error.element = None;
@@ -116,12 +120,13 @@ fn read(request: &ImportRequest) -> Result<Imported, Diagnostic> {
     convert(file, context)
 }
 
-/// The scene in the bytes of a GLB that a plug-in made of the file of `request`.
+/// The scene in the bytes of a GLB that a plug-in made of the file of `request`, variants and moment chosen.
 ///
 /// # Errors
 /// What an import of the bytes as a file would return.
 pub(crate) fn decode(bytes: Vec<u8>, request: &ImportRequest) -> Result<Imported, Diagnostic> {
-    convert(bytes, Context::new(request))
+    let request = ImportRequest { choice: Choice::default(), ..request.clone() };
+    convert(bytes, Context::new(&request))
 }
 
 /// Whether the bytes are a GLB.
@@ -130,18 +135,20 @@ pub(crate) fn is_container(bytes: &[u8]) -> bool {
 }
 
 fn convert(file: Vec<u8>, mut context: Context) -> Result<Imported, Diagnostic> {
-    let (root, binary) = document::parse(file, &mut context.report)?;
-    check::indices(&root)?;
-    let parents = check::parents(&root)?;
-    let buffers = buffers::Buffers::load(&root, binary, &mut context)?;
-    let asset = Asset { root, buffers };
+    let asset = load(file, &mut context)?;
+    check::indices(&asset.root)?;
+    let parents = check::parents(&asset.root)?;
 
     let mut scene = Scene::default();
     let materials = material::materials(&asset, &mut context, &mut scene)?;
-    let meshes = mesh::meshes(&asset, &mut context, &mut scene, &materials)?;
+    let places = node::Places::new(&asset.root, &mut context, &parents)?;
+    let variants = variants::Variants::chosen(&asset.root, &mut context)?;
+    let meshes = mesh::Maker { asset: &asset, materials, variants, globals: &places.globals };
+    let meshes = meshes.meshes(&mut context, &mut scene)?;
     let lights = light::lights(&asset.root, &mut context, &mut scene);
     let cameras = camera::cameras(&asset.root, &mut context, &mut scene);
-    node::nodes(&asset.root, &mut context, &mut scene, &node::Parts { meshes, lights, cameras })?;
+    node::nodes(&asset.root, &mut context, &mut scene, node::Parts { places, meshes, lights, cameras })?;
+    instances::expand(&asset, &mut context, &mut scene)?;
     scene.roots = node::roots(&asset.root, &parents, &mut context);
     if scene.roots.is_empty() {
         context.report.add(Diagnostic::warning("the scene places no nodes, there is nothing to see"));
@@ -152,6 +159,26 @@ fn convert(file: Vec<u8>, mut context: Context) -> Result<Imported, Diagnostic> 
     context.files.retain(|path| met.insert(path.clone()));
     let diagnostics = context.report.finish(&context.request.path);
     Ok(Imported { scene, diagnostics, files: context.files, ..Imported::default() })
+}
+
+/// The document at the moment that is asked for, and its buffers.
+fn load(file: Vec<u8>, context: &mut Context) -> Result<Asset, Diagnostic> {
+    let document::Document { mut json, animations, binary } = document::parse(file, &mut context.report)?;
+    let moment = context.request.choice.seconds().filter(|_| !animations.is_empty());
+    let Some(seconds) = moment else {
+        if !animations.is_empty() {
+            context.report.note("animations", "the rest pose is shown; --frame or --at chooses a moment");
+        }
+        let root = document::root(json)?;
+        let buffers = buffers::Buffers::load(&root, binary, context)?;
+        return Ok(Asset { root, buffers });
+    };
+    let root = document::root(json.clone())?;
+    let buffers = buffers::Buffers::load(&root, binary, context)?;
+    let mut asset = Asset { root, buffers };
+    animation::apply(&animations, seconds, &asset, context, &mut json)?;
+    asset.root = document::root(json)?;
+    Ok(asset)
 }
 
 /// The item at `index`, or an error that names the element which points beyond.

@@ -7,9 +7,39 @@ use serde::Deserialize;
 
 use super::{Context, at, extensions, light};
 
+/// Where nodes are.
+pub(super) struct Places {
+    /// From each node's space to its parent's.
+    pub locals: Vec<DAffine3>,
+    /// From each node's space to the file's.
+    pub globals: Vec<DAffine3>,
+}
+
+impl Places {
+    /// # Errors
+    /// A transform is not finite.
+    pub fn new(root: &Root, context: &mut Context, parents: &[Option<usize>]) -> Result<Self, Diagnostic> {
+        let local = |(i, node)| transform(node, context, &format!("nodes[{i}]"));
+        let locals = root.nodes.iter().enumerate().map(local).collect::<Result<Vec<_>, _>>()?;
+        let mut globals = locals.clone();
+        let mut open: Vec<_> = (0..parents.len()).filter(|&i| parents.get(i) == Some(&None)).collect();
+        while let Some(i) = open.pop() {
+            let (Some(node), Some(&place)) = (root.nodes.get(i), globals.get(i)) else { continue };
+            for child in node.children.iter().flatten().map(|child| child.value()) {
+                if let (Some(global), Some(local)) = (globals.get_mut(child), locals.get(child)) {
+                    *global = place * *local;
+                    open.push(child);
+                }
+            }
+        }
+        Ok(Self { locals, globals })
+    }
+}
+
 /// What nodes place, by the indices of the file.
 pub(super) struct Parts {
-    /// One mesh per primitive.
+    pub places: Places,
+    /// One mesh per primitive of the node's mesh.
     pub meshes: Vec<Vec<Id<Mesh>>>,
     /// `None` where dropped.
     pub lights: Vec<Option<Id<Light>>>,
@@ -35,14 +65,15 @@ fn shown() -> bool {
 /// Adds all nodes, in file order, so that indices and handles agree.
 ///
 /// # Errors
-/// A transform is not finite, or a light's index points beyond the list.
+/// A light's index points beyond the list.
 pub(super) fn nodes(
     root: &Root,
     context: &mut Context,
     scene: &mut Scene,
-    parts: &Parts,
+    parts: Parts,
 ) -> Result<(), Diagnostic> {
-    for (i, node) in root.nodes.iter().enumerate() {
+    let shown = root.nodes.iter().zip(parts.places.locals).zip(parts.meshes);
+    for (i, ((node, transform), meshes)) in shown.enumerate() {
         let element = format!("nodes[{i}]");
         let others = node.extensions.as_ref().map(|extensions| &extensions.others);
         let placed: Option<PlacedLight> =
@@ -56,13 +87,12 @@ pub(super) fn nodes(
         };
         let visibility: Option<Visibility> =
             extensions::read(others, "KHR_node_visibility", &element, &mut context.report);
-        let meshes = node.mesh.and_then(|mesh| parts.meshes.get(mesh.value()));
         let camera = node.camera.and_then(|camera| parts.cameras.get(camera.value()));
         scene.nodes.push(Node {
             name: node.name.clone().unwrap_or_else(|| element.clone()),
-            transform: transform(node, context, &element)?,
+            transform,
             children: node.children.iter().flatten().map(|child| Id::new(child.value())).collect(),
-            meshes: meshes.cloned().unwrap_or_default(),
+            meshes,
             material: None,
             light,
             camera: camera.copied().flatten(),

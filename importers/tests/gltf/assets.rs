@@ -7,7 +7,7 @@ use std::{
 };
 
 use ajar_importers::{gltf::Gltf, import};
-use ajar_scene::{Diagnostic, ImportRequest, Imported, Importer, Severity};
+use ajar_scene::{Choice, Diagnostic, ImportRequest, Imported, Importer, Severity};
 use glam::Vec3;
 use serde_json::Value;
 
@@ -60,7 +60,7 @@ const FACTS: [(&str, [usize; 6]); 57] = [
     ("blender_19_sheen", [7, 7, 6720, 7, 0, 0]),
     ("blender_20_specular", [7, 7, 6720, 7, 0, 0]),
     ("blender_22_vertex_color", [5, 3, 5, 0, 0, 0]),
-    ("blender_24_gpu_instancing", [6, 2, 8066, 2, 0, 0]),
+    ("blender_24_gpu_instancing", [1905, 2, 7_656_770, 2, 0, 0]),
     ("derived_diffuse_transmission", [1, 1, 12, 1, 0, 0]),
     ("gltf_primitives", [1, 4, 12, 4, 0, 0]),
     ("magnum_camera", [0, 0, 0, 0, 0, 4]),
@@ -69,21 +69,20 @@ const FACTS: [(&str, [usize; 6]); 57] = [
     ("magnum_mesh-primitives-types", [0, 5, 0, 0, 0, 0]),
     ("magnum_mesh-sparse", [0, 8, 0, 0, 0, 0]),
     ("sphere_lights", [5, 1, 224, 1, 4, 0]),
-    ("teapots_galore", [7, 2, 8066, 3, 0, 1]),
+    ("teapots_galore", [1906, 2, 7_656_770, 3, 0, 1]),
     ("webp_required", [2, 1, 12, 1, 0, 0]),
 ];
 
 /// Files that require what is not supported.
-const REFUSED: [(&str, &str); 5] = [
+const REFUSED: [(&str, &str); 4] = [
     ("BoxMeshopt", "EXT_meshopt_compression"),
     ("Box_Draco", "KHR_draco_mesh_compression"),
-    ("blender_14_emission_strength", "KHR_materials_pbrSpecularGlossiness"),
     ("magnum_image-basis-embedded", "GOOGLE_texture_basis"),
     ("meshopt-no-fallback", "EXT_meshopt_compression"),
 ];
 
 /// The folder of shared test assets, if there is one on this machine.
-fn shared() -> Option<PathBuf> {
+pub fn shared() -> Option<PathBuf> {
     let root = std::env::var_os("AJAR_SHARED").map(PathBuf::from);
     let root = root.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"));
     let assets = root.join("assets");
@@ -110,7 +109,11 @@ fn listed(assets: &Path, kind: &str) -> Vec<(String, PathBuf)> {
 }
 
 fn load(path: &Path) -> Result<Imported, Diagnostic> {
-    Gltf.import(&ImportRequest::new(path))
+    load_as(path, &Choice::default())
+}
+
+pub fn load_as(path: &Path, choice: &Choice) -> Result<Imported, Diagnostic> {
+    Gltf.import(&ImportRequest { choice: choice.clone(), ..ImportRequest::new(path) })
 }
 
 #[test]
@@ -157,6 +160,9 @@ fn document(path: &Path) -> Value {
 /// Positions lie within the bounds that the exporter wrote, and reach them where all vertices are in use.
 fn check_bounds(name: &str, path: &Path, imported: &Imported) {
     let document = document(path);
+    if document["skins"].is_array() || document["meshes"][0]["weights"].is_array() {
+        return;
+    }
     let primitives =
         document["meshes"].as_array().into_iter().flatten().flat_map(|m| m["primitives"].as_array().unwrap());
     let positions: Vec<_> = primitives
@@ -195,9 +201,10 @@ fn malformed_files_give_an_error_or_a_warning() {
         let start = std::time::Instant::now();
         match import(&ImportRequest::new(&path)) {
             Ok(imported) => {
-                // An empty binary chunk beside a data URI is allowed; it is here because it crashed another reader.
-                let fine = name == "tinygltf_zero-sized-bin-chunk-issue-440";
-                assert_eq!(imported.diagnostics.is_empty(), fine, "{name}");
+                // An empty binary chunk beside a data URI is allowed, and so is a skin of two joints that no node
+                // has; they are here because they crashed another reader.
+                let fine = ["tinygltf_zero-sized-bin-chunk-issue-440", "tinygltf_issue-492"];
+                assert_eq!(imported.diagnostics.is_empty(), fine.contains(&name.as_str()), "{name}");
             }
             Err(error) => assert!(!error.message.contains("importer failed"), "{name}: {error}"),
         }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use ajar_scene::{Diagnostic, ImportRequest, Imported};
+use ajar_scene::{Choice, Diagnostic, ImportRequest, Imported};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
 
@@ -143,6 +143,14 @@ impl Asset {
 
     pub fn import(&self) -> Result<Imported, Diagnostic> {
         import_files(&[("main.gltf", &self.text())])
+    }
+
+    /// Imports what a choice shows.
+    pub fn import_as(&self, choice: &Choice) -> Result<Imported, Diagnostic> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("main.gltf");
+        fs::write(&path, self.text()).unwrap();
+        ajar_importers::import(&ImportRequest { choice: choice.clone(), ..ImportRequest::new(path) })
     }
 }
 

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use ajar_importers::{find, import, importers};
-use ajar_scene::{ImportRequest, Severity};
+use ajar_scene::ImportRequest;
 use serde_json::json;
 
 use crate::{
     build::{Asset, data_uri, import_files},
-    failure, messages, parts, warnings,
+    failure, parts, warnings,
 };
 
 #[test]
@@ -191,42 +191,6 @@ fn unsupported_extensions_are_named_once_with_what_is_lost() {
             "materials[1].extensions.ACME_glow: ACME_glow is not supported: what it adds is missing",
             "materials[0].extensions.KHR_materials_sheen: KHR_materials_sheen is not supported: the sheen is missing",
             "extensionsUsed[1]: MSFT_lod is not supported: the first level of detail is shown",
-        ]
-    );
-}
-
-#[test]
-fn variants_show_the_default_materials() {
-    let mut asset =
-        Asset::triangle(json!({"material": 0, "extensions": {"KHR_materials_variants": {"mappings": []}}}));
-    asset.json["materials"] = json!([{"name": "plain"}]);
-    asset.json["extensionsRequired"] = json!(["KHR_materials_variants"]);
-    let imported = asset.import().unwrap();
-    assert_eq!(imported.scene.materials.iter().next().unwrap().name, "plain");
-    let element = "meshes[0].primitives[0].extensions.KHR_materials_variants";
-    assert_eq!(
-        warnings(&imported),
-        [format!("{element}: variants cannot be chosen, the default materials are shown")]
-    );
-}
-
-#[test]
-fn animations_and_skins_are_named_but_do_not_stop_the_import() {
-    let mut asset = Asset::triangle(json!({}));
-    let target =
-        json!({"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": "/nodes/0/scale"}}});
-    asset.json["animations"] = json!([{"channels": [{"sampler": 0, "target": target}], "samplers": []}]);
-    asset.json["skins"] = json!([{"joints": [0]}]);
-    asset.json["scenes"] = json!([{}]);
-    let imported = asset.import().unwrap();
-    assert_eq!(
-        messages(&imported, Severity::Note),
-        [
-            "animations[0].channels[0].target.extensions.KHR_animation_pointer: KHR_animation_pointer is not supported: its \
-         animations are ignored",
-            "animations: animations are ignored; the scene is shown in its rest pose",
-            "skins: skins are ignored; the scene is shown in its rest pose",
-            "-: the scene places no nodes, there is nothing to see",
         ]
     );
 }

@@ -8,7 +8,7 @@ use std::{
 };
 
 use ajar_importers::gltf::Gltf;
-use ajar_scene::{ImportRequest, Importer, Scene, Severity};
+use ajar_scene::{Choice, ImportRequest, Importer, Moment, Scene, Severity};
 use serde_json::{Value, json};
 
 use crate::build::{Asset, PNG, UNSIGNED_BYTE, UNSIGNED_SHORT, data_uri, floats};
@@ -77,7 +77,35 @@ fn rich() -> Asset {
     asset.push("nodes", json!({"children": [2], "camera": 0, "extensions": lit, "scale": [1, 2, 3]}));
     asset.json["scenes"] = json!([{"nodes": [3]}]);
     asset.json["scene"] = json!(0);
+    set_in_motion(&mut asset);
     asset
+}
+
+/// Bends, moves and repeats the meshes of [`rich`].
+fn set_in_motion(asset: &mut Asset) {
+    let joints = asset.accessor(UNSIGNED_BYTE, "VEC4", 4, &[0, 1, 0, 0].repeat(4), json!({}));
+    let weights = asset.float_accessor("VEC4", 4, &[0.5, 0.5, 0.0, 0.0].repeat(4));
+    let identity = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let inverses = asset.float_accessor("MAT4", 16, &identity.repeat(2));
+    asset.attribute("JOINTS_0", joints);
+    asset.attribute("WEIGHTS_0", weights);
+    asset.json["skins"] = json!([{"joints": [2, 3], "inverseBindMatrices": inverses}]);
+    asset.json["nodes"][0]["skin"] = json!(0);
+    asset.json["meshes"][1]["weights"] = json!([0.5]);
+    let places = asset.float_accessor("VEC3", 3, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    asset.json["nodes"][1]["extensions"] =
+        json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": places}}});
+    let times = asset.float_accessor("SCALAR", 1, &[0.0, 1.0]);
+    let turns = asset.float_accessor("VEC4", 4, &[0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0]);
+    let pointer = json!({"KHR_animation_pointer": {"pointer": "/materials/0/emissiveFactor"}});
+    asset.json["animations"] = json!([{
+        "samplers": [{"input": times, "output": places}, {"input": times, "output": turns}],
+        "channels": [
+            {"sampler": 0, "target": {"node": 2, "path": "translation"}},
+            {"sampler": 1, "target": {"node": 3, "path": "rotation"}},
+            {"sampler": 0, "target": {"path": "pointer", "extensions": pointer}},
+        ],
+    }]);
 }
 
 /// Every handle, index, length and number of the scene is as promised.
@@ -137,7 +165,8 @@ fn survives(folder: &Path, bytes: &[u8], what: &str) -> bool {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let path = folder.join(format!("{}.gltf", COUNT.fetch_add(1, Ordering::Relaxed)));
     fs::write(&path, bytes).unwrap();
-    let request = ImportRequest { memory_limit: MEMORY, ..ImportRequest::new(&path) };
+    let choice = Choice { moment: Some(Moment::Seconds(0.25)), ..Choice::default() };
+    let request = ImportRequest { memory_limit: MEMORY, choice, ..ImportRequest::new(&path) };
     let start = Instant::now();
     let outcome = Gltf.import(&request);
     assert!(start.elapsed() < HANG, "{what}: {:?}", start.elapsed());
@@ -162,7 +191,7 @@ fn the_undamaged_file_is_fine() {
     let imported = rich().import().unwrap();
     hold_together(&imported.scene);
     assert_eq!((imported.scene.meshes.len(), imported.scene.textures.len()), (2, 3));
-    assert_eq!(imported.scene.placed().len(), 4);
+    assert_eq!(imported.scene.placed().len(), 6);
 }
 
 #[test]

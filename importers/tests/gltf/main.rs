@@ -9,13 +9,16 @@
 mod assets;
 mod attributes;
 mod build;
+mod deform;
 mod documents;
 mod geometry;
 mod hostile;
 mod layers;
 mod lights;
 mod materials;
+mod motion;
 mod nodes;
+mod variants;
 
 use ajar_scene::{Diagnostic, Imported, Mesh, Severity};
 

@@ -282,3 +282,30 @@ fn occlusion_is_noted_once() {
     assert_eq!(messages(&imported, Severity::Note), [expected]);
     assert_eq!(warnings(&imported), [""; 0]);
 }
+
+#[test]
+fn specular_glossiness_is_a_dielectric_of_its_reflectance() {
+    let extension = json!({"diffuseFactor": [0.5, 0.25, 0.125, 0.75], "specularFactor": [0.04, 0.02, 0.01], "glossinessFactor": 0.75});
+    let (found, _) = material(json!({
+        "extensions": {"KHR_materials_pbrSpecularGlossiness": extension}, "alphaMode": "BLEND",
+        "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 0]},
+    }));
+    assert_eq!((found.base_color.value, found.opacity.value), (Vec3::new(0.5, 0.25, 0.125), 0.75));
+    assert_eq!((found.metallic.value, found.roughness.value), (0.0, 0.25));
+    let reflected = ((found.ior - 1.0) / (found.ior + 1.0)).powi(2) * found.specular_color.value;
+    assert!(reflected.abs_diff_eq(Vec3::new(0.04, 0.02, 0.01), 1e-6), "{reflected}");
+}
+
+#[test]
+fn specular_glossiness_reads_its_texture_as_tint_and_inverted() {
+    let extension = json!({"glossinessFactor": 0.5, "diffuseTexture": {"index": 0}, "specularGlossinessTexture": {"index": 1}});
+    let (found, imported) =
+        material(json!({"extensions": {"KHR_materials_pbrSpecularGlossiness": extension}}));
+    let (gloss, channel) = texture(&imported, &found.roughness);
+    assert_eq!((channel, gloss.scale.w, gloss.bias.w, found.roughness.value), (Channel::A, -0.5, 1.0, 1.0));
+    let (tint, _) = texture(&imported, &found.specular_color);
+    assert_eq!((tint.scale.x, tint.bias.x, tint.color_space), (1.0, 0.0, ColorSpace::Srgb));
+    assert_eq!(tint.image, gloss.image);
+    // White reflects like a mirror, and so does the default.
+    assert!(found.ior > 100.0 && found.specular_color.value == Vec3::ONE);
+}
