@@ -44,7 +44,7 @@ fn real_files() {
     let skinned = load("RiggedSimple", "RiggedSimple.usdz");
     assert_eq!(skinned.scene.meshes.len(), 1);
     let roughness = load("RoughnessTest", "RoughnessTest.usdz");
-    assert!(roughness.scene.images.len() >= 3);
+    assert!(!roughness.scene.images.is_empty());
     let transform = load("TextureTransformTest", "TextureTransformTest.usd");
     assert_eq!(transform.scene.images.len(), 5);
     let plastic = load("MaterialXTest", "basic.usda");
