@@ -10,6 +10,7 @@ pub mod obj;
 pub mod plugin;
 mod polygon;
 mod report;
+pub mod usd;
 
 use std::{
     fs::File,
@@ -24,7 +25,7 @@ const HEAD: u64 = 256;
 
 /// All importers, in the order in which they are asked.
 pub fn importers() -> &'static [&'static dyn Importer] {
-    &[&ajar::Ajar, &gltf::Gltf, &obj::Obj, &plugin::PlugIns]
+    &[&ajar::Ajar, &gltf::Gltf, &obj::Obj, &usd::Usd, &plugin::PlugIns]
 }
 
 /// The importer for the file at `path`: by its extension, by what plug-ins claim, else by its first bytes.

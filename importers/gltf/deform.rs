@@ -93,11 +93,14 @@ fn joints(
     source.joints.iter().enumerate().map(joint).collect()
 }
 
+/// An attribute of a morph target: its name and where it is.
+type Field<'a> = (&'a str, fn(&MorphTarget) -> Option<Index<Source>>);
+
 /// Adds the morph targets of a primitive to a vertex attribute, of which `field` of a target moves `values`.
 pub(super) fn morph(
     vertices: &Vertices,
     context: &mut Context,
-    field: (&str, fn(&MorphTarget) -> Option<Index<Source>>),
+    field: Field,
     values: &mut [Vec3],
 ) -> Result<(), Diagnostic> {
     let targets = vertices.primitive.targets.as_deref().unwrap_or_default();

@@ -1,0 +1,5 @@
+"""`python -m ajar_import_usd`."""
+
+from .main import main
+
+main()

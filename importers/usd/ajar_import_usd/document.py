@@ -1,0 +1,126 @@
+"""The Ajar scene that is printed: lists of items and one binary chunk (docs/ajar-scene.md)."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from .report import StageError
+
+# Bytes that a node takes, roughly, here and in its reader.
+NODE_SIZE = 1024
+
+Matrix = np.ndarray
+"""4 × 4, for row vectors as in USD: its rows are the images of X, Y, Z and the origin."""
+
+
+@dataclass
+class Node:
+    """A node in the making. Trees share subtrees: each instance of a prototype is one more parent."""
+
+    name: str
+    transform: Matrix | None = None
+    meshes: list[int] = field(default_factory=list)
+    light: int | None = None
+    camera: int | None = None
+    children: list[Node] = field(default_factory=list)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it holds nothing that is seen or sees."""
+        return not (self.meshes or self.children) and self.light is None and self.camera is None
+
+
+class Document:
+    """Collects items; each list gives out indices from 0."""
+
+    def __init__(self, memory_limit: int) -> None:
+        self.memory_limit = memory_limit
+        self.lists: dict[str, list[dict[str, Any]]] = {}
+        self.render: dict[str, Any] = {}
+        self.chunk: list[bytes] = []
+        self.size = 0
+
+    def add(self, kind: str, item: dict[str, Any]) -> int:
+        """Appends `item` to the list `kind` and returns its index."""
+        items = self.lists.setdefault(kind, [])
+        items.append(item)
+        return len(items) - 1
+
+    def item(self, kind: str, index: int) -> dict[str, Any]:
+        """What `add` was given."""
+        return self.lists[kind][index]
+
+    def array(self, values: np.ndarray | Sequence[Any], width: int = 1, dtype: str = "<f4") -> dict[str, int]:
+        """Puts items of `width` numbers into the binary chunk."""
+        data = np.ascontiguousarray(np.asarray(values, dtype=dtype).reshape(-1))
+        return self.bytes(data.tobytes(), len(data) // width)
+
+    def indices(self, values: np.ndarray | Sequence[Any], width: int = 1) -> dict[str, int]:
+        """Puts unsigned integers into the binary chunk."""
+        return self.array(values, width, "<u4")
+
+    def bytes(self, data: bytes, count: int | None = None) -> dict[str, int]:
+        """Puts bytes into the binary chunk."""
+        offset = self.size
+        self.chunk += [data, bytes(-len(data) % 4)]
+        self.size += len(data) + -len(data) % 4
+        self.check(self.size)
+        return {"offset": offset, "count": len(data) if count is None else count}
+
+    def check(self, size: int) -> None:
+        """Stops where the limit on memory is met."""
+        if size > self.memory_limit:
+            raise StageError(f"more than the limit of {self.memory_limit} bytes is needed", cause="resource")
+
+    def place(self, root: Node) -> None:
+        """Makes the tree below `root` nodes of the scene; shared subtrees become nodes of each parent."""
+        most = self.memory_limit // NODE_SIZE
+        if count(root) > most:
+            raise StageError(f"instances make {count(root)} nodes, the limit on memory allows {most}", cause="resource")
+        self.lists.setdefault("roots", []).append(self.emit(root))  # type: ignore[arg-type]
+
+    def emit(self, node: Node) -> int:
+        """Adds a node and all below it."""
+        item: dict[str, Any] = {"name": node.name}
+        index = self.add("nodes", item)
+        if node.transform is not None:
+            item["transform"] = [float(x) for x in node.transform[:4, :3].reshape(-1)]
+        if node.meshes:
+            item["meshes"] = node.meshes
+        if node.light is not None:
+            item["light"] = node.light
+        if node.camera is not None:
+            item["camera"] = node.camera
+        if node.children:
+            item["children"] = [self.emit(child) for child in node.children]
+        return index
+
+    def write(self, stream: BinaryIO) -> None:
+        """Prints the container."""
+        top = {"ajar": 1, **self.lists}
+        if self.render:
+            top["render"] = self.render
+        text = json.dumps(top, separators=(",", ":"), allow_nan=False).encode()
+        text += b" " * (-len(text) % 4)
+        stream.write(struct.pack("<4sII", b"AJAR", 1, 28 + len(text) + self.size))
+        stream.write(struct.pack("<I4s", len(text), b"JSON") + text)
+        stream.write(struct.pack("<I4s", self.size, b"BIN\0"))
+        stream.writelines(self.chunk)
+
+
+def count(root: Node) -> int:
+    """Nodes that the tree becomes, without walking shared subtrees twice."""
+    known: dict[int, int] = {}
+
+    def below(node: Node) -> int:
+        if id(node) not in known:
+            known[id(node)] = 1 + sum(below(child) for child in node.children)
+        return known[id(node)]
+
+    return below(root)

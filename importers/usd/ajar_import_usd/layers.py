@@ -1,0 +1,210 @@
+"""What a file makes usd-core open, looked at before it does: where layers lie, and how many prims they make."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlparse
+
+from pxr import Ar, Sdf, Tf
+
+from .report import Report, StageError, commentary
+
+# Bytes that usd-core needs for a prim, roughly.
+PRIM_SIZE = 2048
+DEEPEST = 400
+MOST_LAYERS = 100_000
+
+
+class Jail:
+    """The folders below which files may be read."""
+
+    def __init__(self, file: Path, allowed: list[Path]) -> None:
+        self.folders = [folder.resolve() for folder in [file.parent, *allowed]]
+
+    def check(self, path: str, place: str | None) -> str:
+        """`path` if it may be read; of a path into a package, the package counts."""
+        outer = Ar.SplitPackageRelativePathOuter(path)[0] if Ar.IsPackageRelativePath(path) else path
+        if len(urlparse(outer).scheme) > 1:
+            raise StageError(f"{path!r} is on the network; only files beside the scene are read", place)
+        try:
+            real = Path(outer).resolve()
+        except (OSError, RuntimeError, ValueError) as error:
+            raise StageError(f"{path!r} is no path: {error}", place) from error
+        if not any(real.is_relative_to(folder) for folder in self.folders):
+            hint = "move it there or allow its folder"
+            raise StageError(f"{path!r} lies outside the scene's folder", place, hint)
+        return path
+
+
+def check(file: Path, jail: Jail, memory_limit: int, report: Report) -> None:
+    """Follows all layers from `file`, those of variants and payloads too.
+
+    Raises a failure where one lies outside the jail, is a package that cannot be trusted, or where references multiply
+    beyond memory.
+    """
+    try:
+        size = file.stat().st_size
+    except OSError as error:
+        raise StageError(f"cannot be read: {error.strerror}") from error
+    if size > memory_limit:
+        raise StageError(f"{size} bytes are more than the memory limit", cause="resource")
+    visited = Visited(jail, memory_limit // PRIM_SIZE, report)
+    visited.layer(str(file.resolve()), None)
+    visited.count()
+
+
+class Visited:
+    """The layers found."""
+
+    def __init__(self, jail: Jail, most: int, report: Report) -> None:
+        self.jail, self.most, self.report = jail, most, report
+        self.layers: dict[str, Any] = {}
+        self.counts: dict[tuple[str, str], int] = {}
+
+    def layer(self, path: str, place: str | None) -> None:
+        """Opens the layer at `path` and all that it names."""
+        todo = [(path, place)]
+        while todo:
+            path, place = todo.pop()
+            if path in self.layers:
+                continue
+            if len(self.layers) > MOST_LAYERS:
+                raise StageError(f"more than {MOST_LAYERS} layers", place, cause="resource")
+            self.layers[path] = layer = self.open(self.jail.check(path, place), place)
+            if layer:
+                todo += [(located(layer, asset, place), place) for asset, place in arcs(layer) if asset]
+
+    def open(self, path: str, place: str | None) -> Any:
+        """The layer, or None where there is none: usd-core says so when it composes."""
+        self.report.file(Ar.SplitPackageRelativePathOuter(path)[0])
+        if not Path(Ar.SplitPackageRelativePathOuter(path)[0]).is_file() or path.lower().endswith(".mtlx"):
+            return None
+        if path.lower().endswith(".usdz"):
+            check_package(Path(path), place)
+        try:
+            return Sdf.Layer.FindOrOpen(path)
+        except Tf.ErrorException as error:
+            if place is None:
+                raise StageError(f"is no USD that can be read: {commentary(error)}") from error
+            return None
+
+    def count(self) -> None:
+        """Prims that composition makes at most, references counted as often as they are met."""
+        for path, layer in self.layers.items():
+            if layer:
+                self.below(path, Sdf.Path.absoluteRootPath, 0)
+
+    def below(self, path: str, prim: Any, depth: int) -> int:
+        """Prims of the subtree at `prim` in the layer at `path`."""
+        layer = self.layers.get(path)
+        spec = spec_at(layer, prim)
+        if not spec:
+            return 0
+        key = (path, str(prim))
+        if key not in self.counts:
+            if depth > DEEPEST:
+                raise StageError(f"prims and references are nested more than {DEEPEST} deep", str(prim))
+            # A cycle adds nothing; usd-core reports it.
+            self.counts[key] = 0
+            total = 1 + sum(self.below(path, child.path, depth + 1) for child in children(spec))
+            for asset, target in targets(spec):
+                other = located(layer, asset, None) if asset else path
+                total += self.below(other, target or self.default(other), depth + 1)
+            if total > self.most:
+                raise StageError(f"references make {total} prims, the limit on memory allows {self.most}", str(prim))
+            self.counts[key] = total
+        return self.counts[key]
+
+    def default(self, path: str) -> Any:
+        """The prim that a reference without one means."""
+        layer = self.layers.get(path)
+        name = layer.defaultPrim if layer else ""
+        return Sdf.Path.absoluteRootPath.AppendPath(name) if name else Sdf.Path("/_")
+
+
+def spec_at(layer: Any, path: Any) -> Any:
+    """What a layer says about a prim, or about one in a variant."""
+    found = layer.GetObjectAtPath(path) if layer else None
+    return found.primSpec if isinstance(found, Sdf.VariantSpec) else found
+
+
+def located(layer: Any, asset: str, place: str | None) -> str:
+    """Where `asset` lies, seen from `layer`."""
+    if asset.startswith("`"):
+        raise StageError(f"{asset!r} is computed; such paths are not read", place)
+    asset = Sdf.Layer.SplitIdentifier(asset)[0]
+    path = str(Sdf.ComputeAssetPathRelativeToLayer(layer, asset))
+    if Path(path).is_absolute() or len(urlparse(path).scheme) > 1 or not layer.realPath:
+        return path
+    # What is not found beside its layer keeps its relative path.
+    return str(Path(layer.realPath).parent / path)
+
+
+def arcs(layer: Any) -> Iterator[tuple[str, str | None]]:
+    """Every path that composition may open because of `layer`, with the prim that says so."""
+    for asset in layer.subLayerPaths:
+        yield asset, None
+    found: list[tuple[str, str | None]] = []
+
+    def visit(path: Any) -> None:
+        if path.IsPrimPath() or path.IsPrimVariantSelectionPath():
+            spec, place = spec_at(layer, path), str(path)
+            found.extend((asset, place) for asset, _ in targets(spec))
+            found.extend((asset, place) for asset in clip_files(spec.GetInfo("clips") if spec.HasInfo("clips") else {}))
+
+    layer.Traverse(Sdf.Path.absoluteRootPath, visit)
+    yield from found
+
+
+def clip_files(clips: Any) -> Iterator[str]:
+    """Files that value clips name. Of a template, its folder tells."""
+    if isinstance(clips, Sdf.AssetPath):
+        yield clips.path
+    elif isinstance(clips, dict):
+        for key, value in clips.items():
+            if key == "templateAssetPath":
+                yield str(value)
+            yield from clip_files(value)
+    elif isinstance(clips, (list, tuple, Sdf.AssetPathArray)):
+        for value in clips:
+            yield from clip_files(value)
+
+
+def targets(spec: Any) -> list[tuple[str, Any]]:
+    """References, payloads and, within the layer, inherited and specialized prims of a prim: file and prim."""
+    found = []
+    if hasattr(spec, "referenceList"):
+        for items in (spec.referenceList, spec.payloadList):
+            every = [*items.explicitItems, *items.prependedItems, *items.appendedItems, *items.addedItems]
+            found += [(item.assetPath, item.primPath) for item in every]
+        for items in (spec.inheritPathList, spec.specializesList):
+            found += [("", path) for path in [*items.explicitItems, *items.prependedItems, *items.appendedItems]]
+    return found
+
+
+def children(spec: Any) -> list[Any]:
+    """Prims below a prim, those of its variants too."""
+    found = list(spec.nameChildren)
+    for variants in getattr(spec, "variantSets", {}).values():
+        found += [variant.primSpec for variant in variants.variantList]
+    return found
+
+
+def check_package(path: Path, place: str | None) -> None:
+    """A .usdz holds files as they are, below itself."""
+    try:
+        with zipfile.ZipFile(path) as package:
+            entries = package.infolist()
+    except (zipfile.BadZipFile, OSError, NotImplementedError, ValueError) as error:
+        raise StageError(f"is no package that can be read: {error}", place) from error
+    for entry in entries:
+        parts = entry.filename.replace("\\", "/").split("/")
+        if entry.filename.startswith(("/", "\\")) or ".." in parts or ":" in parts[0]:
+            raise StageError(f"the package holds {entry.filename!r}, which leaves it", place)
+        if entry.compress_type != zipfile.ZIP_STORED or entry.flag_bits & 1:
+            raise StageError(
+                f"the package holds {entry.filename!r} compressed or encrypted; USD wants files as they are", place
+            )

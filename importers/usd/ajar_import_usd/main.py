@@ -1,0 +1,72 @@
+"""Arguments in, an Ajar scene out: the protocol of plug-ins (docs/plug-ins.md)."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from pathlib import Path
+
+from .document import Document
+from .report import Report, StageError
+
+EXTENSIONS = ["usd", "usda", "usdc", "usdz"]
+HEADS = [b"#usda", b"PXR-USDC"]
+
+
+def arguments() -> argparse.Namespace:
+    """The arguments; those of later versions of the protocol are ignored."""
+    parser = argparse.ArgumentParser(prog="ajar_import_usd", allow_abbrev=False)
+    parser.add_argument("--probe", action="store_true")
+    parser.add_argument("--import", dest="file", type=Path)
+    parser.add_argument("--allow", action="append", default=[], type=Path)
+    parser.add_argument("--memory-limit", default=8 << 30, type=int)
+    parser.add_argument("--variant", action="append", default=[])
+    parser.add_argument("--frame", type=float)
+    parser.add_argument("--seconds", type=float)
+    parser.add_argument("--fps", type=float)
+    return parser.parse_known_args()[0]
+
+
+def convert(args: argparse.Namespace, report: Report) -> Document:
+    """The scene that the file holds."""
+    # Packages that are not there are told as an error, and --probe needs none of them.
+    from . import layers, stage, walk
+
+    jail = layers.Jail(args.file, args.allow)
+    with report.listening():
+        layers.check(args.file, jail, args.memory_limit, report)
+        moment = stage.Moment(args.frame, args.seconds, args.fps)
+        opened = stage.open_stage(args.file, args.variant, moment, jail, report)
+        document = Document(args.memory_limit)
+        walk.Walk(opened, document, jail, report).run()
+    return document
+
+
+def main() -> None:
+    """The program."""
+    args = arguments()
+    if args.probe:
+        print(json.dumps({"protocol": 1, "extensions": EXTENSIONS, "heads": [head.hex() for head in HEADS]}))
+        return
+    report = Report()
+    # Folders of the environment would be searched for layers that are not beside the scene.
+    os.environ.pop("PXR_AR_DEFAULT_SEARCH_PATH", None)
+    # Bindings of prims that do not apply the schema act all the same: no warning for each.
+    os.environ["USD_SHADE_WARN_ON_MISSING_MATERIAL_BINDING_API"] = "0"
+    sys.setrecursionlimit(20_000)
+    try:
+        if args.file is None:
+            raise StageError("--probe or --import FILE is needed", cause="usage")
+        document = convert(args, report)
+    except StageError as failure:
+        report.fail(failure)
+        sys.exit(1)
+    except ImportError as error:
+        report.fail(StageError(f"{error}; {sys.executable} lacks a package that USD files need", cause="system"))
+        sys.exit(1)
+    except (MemoryError, RecursionError) as error:
+        report.fail(StageError(f"the stage is too large: {type(error).__name__}", cause="resource"))
+        sys.exit(1)
+    document.write(sys.stdout.buffer)
