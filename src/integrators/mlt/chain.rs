@@ -58,6 +58,7 @@ impl<'a> Chain<'a> {
     pub fn start(&mut self, seed: &Path, rng: Rng, strata: Strata) {
         (self.rng, self.y.strata) = (rng, strata);
         self.x.copy_from(seed);
+        self.y.follow(seed);
         self.aim = self.kernel.target.aim(seed);
         self.selection = self.selection_at(seed);
         self.pending = 0.0;
@@ -69,7 +70,7 @@ impl<'a> Chain<'a> {
     }
 
     fn selection_at(&self, x: &Path) -> Selection {
-        Selection::at(x, self.kernel.mutations, self.kernel.table)
+        Selection::at(&x.signature, self.kernel.mutations, self.kernel.table)
     }
 
     /// Makes `steps` steps. `record` takes the paths of expected-value recording (Veach & Guibas 1997 §3.1): what they
@@ -99,7 +100,8 @@ impl<'a> Chain<'a> {
             }
         };
         let aim = self.kernel.target.aim(&self.y.path);
-        let selection = self.selection_at(&self.y.path);
+        let same_kind = self.y.path.signature == self.x.signature;
+        let selection = if same_kind { self.selection } else { self.selection_at(&self.y.path) };
         let x = State { path: &self.x, aim: &self.aim, selection: &self.selection };
         let y = State { path: &self.y.path, aim: &aim, selection: &selection };
         let ratio = ratio(&self.kernel, &x, &y, m, &aux);
@@ -113,7 +115,7 @@ impl<'a> Chain<'a> {
         self.stats.count(m, acceptance, accepted);
         if accepted {
             record(&self.x, &self.aim, self.pending + 1.0 - acceptance);
-            std::mem::swap(&mut self.x, &mut self.y.path);
+            self.y.accept(&mut self.x);
             (self.aim, self.selection, self.pending) = (aim, selection, acceptance);
         } else {
             if acceptance > 0.0 {
@@ -139,8 +141,12 @@ pub struct State<'a> {
 /// acceptance probability where it is less than 1.
 pub fn ratio(kernel: &Kernel<'_>, x: &State<'_>, y: &State<'_>, m: usize, aux: &Aux) -> f64 {
     let (space, mutation) = (&kernel.space, kernel.mutations[m]);
-    let forth = mutation.log_q(space, x.path, y.path, aux);
-    let back = mutation.log_q(space, y.path, x.path, &aux.reverse());
+    let forth = mutation.q(space, x.path, y.path, aux);
+    let back = mutation.q(space, y.path, x.path, &aux.reverse());
+    if !(forth.is_normal() && (back.is_normal() || back == 0.0)) {
+        // Products that leave the range of f64 do so seen from either end.
+        return f64::NAN;
+    }
     let chosen = y.selection.probability(m) / x.selection.probability(m);
-    (back - forth).exp() * chosen * y.aim.weight / x.aim.weight
+    back / forth * chosen * y.aim.weight / x.aim.weight
 }

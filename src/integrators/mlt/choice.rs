@@ -5,7 +5,7 @@
 
 use ajar_render::rng::Rng;
 
-use super::{Mutation, path::Path};
+use super::{Mutation, path::Signature};
 
 /// Classes of paths.
 pub const CLASSES: usize = 24;
@@ -13,7 +13,7 @@ pub const CLASSES: usize = 24;
 /// What makes mutations fit a path or not: number of Dirac chains that the eye looks through (0, 1, more), whether two
 /// neighbours that scatter smoothly (or lie on a light) follow each other anywhere, and the number of edges (2, 3, 4,
 /// more).
-pub fn class(x: &Path) -> usize {
+pub fn class(x: &Signature) -> usize {
     let k = x.edges();
     let mut chains = 0;
     let mut i = k - 1;
@@ -65,8 +65,8 @@ impl Selection {
     /// Nothing applies.
     pub const NONE: Self = Self { weights: [0.0; MAX_MUTATIONS], total: 0.0 };
 
-    /// At `x`.
-    pub fn at(x: &Path, mutations: &[&dyn Mutation], table: &Table) -> Self {
+    /// At paths of the kind `x`.
+    pub fn at(x: &Signature, mutations: &[&dyn Mutation], table: &Table) -> Self {
         let row = &table.weights[class(x)];
         let mut weights = [0.0; MAX_MUTATIONS];
         let mut total = 0.0;

@@ -6,7 +6,7 @@
 use ajar_render::rng::Rng;
 
 use super::{
-    path::{Path, Space},
+    path::{Path, Signature, Space},
     proposal::Proposal,
 };
 
@@ -30,7 +30,7 @@ pub enum Reject {
 }
 
 /// What a mutation chose besides vertices. All of it can be read backwards: [`Aux::reverse`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aux {
     /// Vertices kept on the light's side.
     pub stem: usize,
@@ -38,8 +38,14 @@ pub struct Aux {
     pub removed: usize,
     /// Vertices that replace them.
     pub added: usize,
-    /// Logarithms of the probabilities of labels that are kept, at x and at y.
+    /// Probabilities of the labels that are kept, at x and at y.
     pub labels: [f64; 2],
+}
+
+impl Default for Aux {
+    fn default() -> Self {
+        Self { stem: 0, removed: 0, added: 0, labels: [1.0; 2] }
+    }
 }
 
 impl Aux {
@@ -55,16 +61,16 @@ pub trait Mutation: Sync {
     /// Name in settings and statistics.
     fn name(&self) -> &'static str;
 
-    /// Whether it can be applied to `x`; a function of the path alone.
-    fn applies(&self, x: &Path) -> bool;
+    /// Whether it can be applied to paths of this kind.
+    fn applies(&self, x: &Signature) -> bool;
 
-    /// Proposes a path from `x` into `y`.
+    /// Proposes a path from `x`, which `y` follows, into `y`.
     ///
     /// # Errors
     /// Why there is none; the step then counts as a rejection.
     fn propose(&self, space: &Space<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Result<Aux, Reject>;
 
-    /// ln(T(y|x; aux) / f*(y)), up to a term that is the same for (x, y, aux) and (y, x, aux.reverse()). Draws no random
-    /// number and casts no ray. Minus infinity where y cannot be proposed.
-    fn log_q(&self, space: &Space<'_>, x: &Path, y: &Path, aux: &Aux) -> f64;
+    /// T(y|x; aux) / f*(y), up to a factor that is the same for (x, y, aux) and (y, x, aux.reverse()). Draws no random
+    /// number and casts no ray. 0 where y cannot be proposed.
+    fn q(&self, space: &Space<'_>, x: &Path, y: &Path, aux: &Aux) -> f64;
 }

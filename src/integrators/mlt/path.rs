@@ -77,6 +77,30 @@ pub struct Node {
 }
 
 impl Node {
+    /// Its vertex has become another.
+    pub fn arrived(&mut self) {
+        self.albedo = self.vertex.bsdf.albedo_bound();
+    }
+
+    /// Takes over what was measured of `other`, whose vertex is the same in all but, at the lens, its place.
+    pub fn copy_measured(&mut self, other: &Self) {
+        self.vertex.p = other.vertex.p;
+        (self.factor, self.absorption) = (other.factor, other.absorption);
+        (self.to_eye, self.to_light) = (other.to_eye, other.to_light);
+        (self.edge, self.geometry, self.passed) = (other.edge, other.geometry, other.passed);
+    }
+
+    /// Whether it equals `other` in all that changes along a chain.
+    pub fn is(&self, other: &Self) -> bool {
+        let (a, b) = (&self.vertex, &other.vertex);
+        a.p == b.p
+            && a.site == b.site
+            && a.mode == b.mode
+            && (self.factor, self.absorption) == (other.factor, other.absorption)
+            && (self.to_eye, self.to_light) == (other.to_eye, other.to_light)
+            && (self.geometry, self.passed) == (other.geometry, other.passed)
+    }
+
     /// A vertex of which nothing else is known yet.
     pub fn new(vertex: Vertex) -> Self {
         Self {
@@ -95,6 +119,39 @@ impl Node {
     }
 }
 
+/// What mutations fit a path by: where connections may end, and what x_0 is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Signature {
+    /// Bit i: a connection may end at x_i.
+    connectable: u128,
+    /// Number of edges k.
+    edges: usize,
+    /// Whether x_0 lies infinitely far.
+    infinite: bool,
+}
+
+impl Signature {
+    /// Number of edges k.
+    pub fn edges(&self) -> usize {
+        self.edges
+    }
+
+    /// Whether a connection may end at x_i.
+    pub fn connectable(&self, i: usize) -> bool {
+        self.connectable >> i & 1 == 1
+    }
+
+    /// Bit i: a connection may end at x_i.
+    pub fn ends(&self) -> u128 {
+        self.connectable
+    }
+
+    /// Whether x_0 lies infinitely far.
+    pub fn is_lit_from_far(&self) -> bool {
+        self.infinite
+    }
+}
+
 /// A path.
 #[derive(Clone, Debug, Default)]
 pub struct Path {
@@ -108,6 +165,8 @@ pub struct Path {
     pub f: Rgb,
     /// Density of x_0 as a sampled light end.
     pub light: f64,
+    /// What mutations fit it by.
+    pub signature: Signature,
 }
 
 impl Path {
@@ -128,14 +187,28 @@ impl Path {
 
     /// Whether a connection may end at x_i.
     pub fn connectable(&self, i: usize) -> bool {
-        self.nodes[i].vertex.connectable()
+        self.signature.connectable(i)
+    }
+
+    fn sign(&mut self) {
+        let bit = |(i, node): (usize, &Node)| u128::from(node.vertex.connectable()) << i;
+        self.signature = Signature {
+            connectable: self.nodes.iter().enumerate().map(bit).fold(0, |bits, bit| bits | bit),
+            edges: self.edges(),
+            infinite: self.nodes[0].vertex.infinite(),
+        };
     }
 
     /// Becomes a copy of `other`.
     pub fn copy_from(&mut self, other: &Self) {
         self.nodes.clone_from(&other.nodes);
+        self.copy_rest_from(other);
+    }
+
+    /// Becomes a copy of `other` but for its nodes.
+    pub fn copy_rest_from(&mut self, other: &Self) {
         (self.raster, self.lens) = (other.raster, other.lens);
-        (self.f, self.light) = (other.f, other.light);
+        (self.f, self.light, self.signature) = (other.f, other.light, other.signature);
     }
 
     /// Recomputes f, and everything that depends on edges `from..to` and vertices `from..=to`. `connection` is the edge
@@ -150,6 +223,7 @@ impl Path {
         connection: Option<usize>,
     ) -> Result<(), Reject> {
         let world = space.world;
+        self.sign();
         for e in from..to {
             let (light, eye) = (&self.nodes[e].vertex, &self.nodes[e + 1].vertex);
             let edge = Edge::between(light, eye, world.shortest_edge).ok_or(Reject::Black)?;

@@ -1,6 +1,11 @@
 //! A path in the making: x_0 … x_l of the old one, new vertices from both ends, x_m … x_k of the old one.
 //!
 //! Nothing here knows densities: walks choose directions and cast rays, [`Proposal::join`] measures the result.
+//!
+//! Most proposals change two or three vertices and most are rejected, so a proposal is a copy of the path that it comes
+//! from and remembers which of its nodes may differ: only these are copied back for the next one.
+
+use std::ops::Range;
 
 use ajar_render::{
     bsdf::{Mode, Side},
@@ -14,19 +19,20 @@ use super::{
     path::{Node, Path, Space},
     strata::Strata,
 };
-use crate::bdpt::MAX_VERTICES;
 
 /// A path in the making; keeps its memory.
 #[derive(Debug)]
 pub struct Proposal {
-    /// The kept light side and the new vertices from it; after [`Proposal::join`] the whole path.
+    /// The path: whole after [`Proposal::join`].
     pub path: Path,
-    /// From the first vertex that the eye's side starts from, kept or new, towards the light.
-    tail: Vec<Node>,
-    /// Index of the first kept vertex of the eye's side in the old path; its edges + 1 if none is.
-    kept: usize,
-    /// Number of vertices kept on the light's side.
-    stem: usize,
+    /// Nodes that may differ from those of the path that it follows; all others are the same.
+    changed: Range<usize>,
+    /// Those of them whose vertices are others; at the rest only what was measured may differ.
+    new: Range<usize>,
+    /// Vertices on the light's side so far, kept ones included.
+    light: usize,
+    /// Index of the last vertex on the eye's side so far; the number of vertices if there is none.
+    eye: usize,
     /// Directions from the ends to the vertices before them.
     to_light: DVec3,
     to_eye: DVec3,
@@ -42,9 +48,10 @@ impl Default for Proposal {
     fn default() -> Self {
         Self {
             path: Path::with_capacity(),
-            tail: Vec::with_capacity(MAX_VERTICES),
-            kept: 0,
-            stem: 0,
+            changed: 0..0,
+            new: 0..0,
+            light: 0,
+            eye: 0,
             to_light: DVec3::ZERO,
             to_eye: DVec3::ZERO,
             new_lens: false,
@@ -55,31 +62,82 @@ impl Default for Proposal {
 }
 
 impl Proposal {
-    /// Keeps the first `stem` vertices of `x` and those from `x_kept` on.
-    pub fn begin(&mut self, x: &Path, stem: usize, kept: usize) {
-        (self.stem, self.kept) = (stem, kept);
-        self.path.nodes.clear();
-        self.path.nodes.extend_from_slice(&x.nodes[..stem]);
-        (self.path.raster, self.path.lens, self.path.light) = (x.raster, x.lens, x.light);
+    /// From now on proposals come from `x`.
+    pub fn follow(&mut self, x: &Path) {
+        self.path.copy_from(x);
+        self.changed = 0..0;
+    }
+
+    /// `x`, which it follows, becomes the path that it proposes.
+    pub fn accept(&mut self, x: &mut Path) {
+        std::mem::swap(x, &mut self.path);
+    }
+
+    /// Keeps the first `stem` vertices of `x` and those from `kept` on, and makes room for `added` between them.
+    ///
+    /// # Errors
+    /// The path would be too short or too long.
+    pub fn begin(
+        &mut self,
+        space: &Space<'_>,
+        x: &Path,
+        (stem, kept, added): (usize, usize, usize),
+    ) -> Result<(), Reject> {
+        let (old, new) = (x.nodes.len(), stem..stem + added);
+        let len = new.end + old - kept;
+        if len < 3 || len > space.max_depth + 1 {
+            return Err(Reject::Unsuitable);
+        }
+        self.restore(x, if len == old { new.clone() } else { 0..0 });
+        self.changed = stem.saturating_sub(1)..(new.end + 1).min(len);
+        if len != old {
+            self.path.nodes.truncate(stem);
+            self.path.nodes.resize(new.end, x.nodes[0]);
+            self.path.nodes.extend_from_slice(&x.nodes[kept..]);
+            self.changed.end = usize::MAX;
+        }
+        (self.light, self.eye) = (stem, new.end);
+        self.new = new;
         if stem >= 2 {
             self.to_light = -x.nodes[stem - 2].edge.to_eye;
         }
-        self.tail.clear();
-        self.new_lens = false;
         if let Some(node) = x.nodes.get(kept) {
-            self.tail.push(*node);
             self.to_eye = node.edge.to_eye;
         }
+        self.new_lens = false;
+        Ok(())
+    }
+
+    /// Becomes a copy of `x`, which it follows, again, but for the nodes that are going to be `new`.
+    fn restore(&mut self, x: &Path, new: Range<usize>) {
+        let nodes = &mut self.path.nodes;
+        if nodes.len() == x.nodes.len() {
+            for i in self.changed.clone().filter(|i| !new.contains(i)) {
+                if self.new.contains(&i) {
+                    nodes[i] = x.nodes[i];
+                } else {
+                    nodes[i].copy_measured(&x.nodes[i]);
+                }
+            }
+        } else {
+            nodes.truncate(self.changed.start);
+            nodes.extend_from_slice(&x.nodes[self.changed.start..]);
+        }
+        self.path.copy_rest_from(x);
+        debug_assert!(
+            self.path.nodes.iter().zip(&x.nodes).enumerate().all(|(i, (a, b))| new.contains(&i) || a.is(b)),
+            "a proposal has to follow the path it comes from"
+        );
     }
 
     /// The last vertex of the light's side.
     pub fn light_end(&self) -> Option<&Vertex> {
-        self.path.nodes.last().map(|node| &node.vertex)
+        self.light.checked_sub(1).map(|end| &self.path.nodes[end].vertex)
     }
 
     /// The last vertex of the eye's side, and the direction to the one before it.
     pub fn eye_end(&self) -> Option<(&Vertex, DVec3)> {
-        self.tail.last().map(|node| (&node.vertex, self.to_eye))
+        self.path.nodes.get(self.eye).map(|node| (&node.vertex, self.to_eye))
     }
 
     /// Direction from the last vertex of the light's side to the one before it.
@@ -89,25 +147,27 @@ impl Proposal {
 
     /// Whether the eye's side has only a kept vertex so far, the lens.
     pub fn starts_at_kept_lens(&self) -> bool {
-        matches!(self.tail.as_slice(), [node] if node.vertex.kind == Kind::Lens) && !self.new_lens
+        self.eye == self.new.end && self.eye_end().is_some_and(|(end, _)| end.kind == Kind::Lens)
     }
 
-    /// Whether the eye's side scatters smoothly anywhere between its ends.
+    /// Whether the new vertices of the eye's side scatter smoothly anywhere between its ends.
     pub fn has_smooth_between_ends(&self) -> bool {
-        let between = 1..self.tail.len().saturating_sub(1);
-        self.tail[between].iter().any(|node| node.vertex.connectable())
+        let first = self.new.end - usize::from(self.new_lens);
+        self.path.nodes[(self.eye + 1).min(first)..first].iter().any(|node| node.vertex.connectable())
     }
 
     /// Adds `x0` as the new light end.
     pub fn push_light(&mut self, x0: Vertex) {
-        self.path.nodes.push(Node::new(x0));
+        self.path.nodes[self.light] = Node::new(x0);
+        self.light += 1;
     }
 
     /// Adds a new lens vertex at the lens point `lens`. Its place may depend on the raster position.
     pub fn push_lens(&mut self, space: &Space<'_>, lens: [f64; 2]) {
         (self.path.lens, self.new_lens) = (lens, true);
         let origin = space.world.camera.ray(self.path.raster, lens).origin;
-        self.tail.push(Node::new(space.world.lens_vertex(origin)));
+        self.eye -= 1;
+        self.path.nodes[self.eye] = Node::new(space.world.lens_vertex(origin));
     }
 
     /// Adds `n` vertices to the light's side by sampling.
@@ -116,15 +176,14 @@ impl Proposal {
     /// The walk was lost or absorbed.
     pub fn sample_from_light(&mut self, space: &Space<'_>, n: usize, rng: &mut Rng) -> Result<(), Reject> {
         for _ in 0..n {
-            if self.path.nodes.is_empty() {
+            let Some(end) = self.light.checked_sub(1) else {
                 let (x0, _) = space.world.lights.sample(rng.f64(), rng.pair()).ok_or(Reject::Lost)?;
                 self.push_light(x0);
                 continue;
-            }
-            let index = self.path.nodes.len() - 1;
-            let kept = self.path.nodes.len() == self.stem;
-            let vertex = &mut self.path.nodes[index].vertex;
-            if index == 0 {
+            };
+            let kept = self.light == self.new.start;
+            let vertex = &mut self.path.nodes[end].vertex;
+            if end == 0 {
                 let emission = space.world.lights.emit(vertex, rng.pair(), rng.f64()).ok_or(Reject::Lost)?;
                 let direction = emission.direction;
                 let origin = if vertex.infinite() { emission.origin } else { vertex.leave(direction) };
@@ -160,8 +219,12 @@ impl Proposal {
     ) -> Result<(), Reject> {
         let seed = if space.world.has_alpha() { rng.next_u32() } else { 0 };
         self.rays += 1;
-        let vertex = space.world.trace(origin, direction, false, seed).ok_or(Reject::Lost)?;
-        self.path.nodes.push(Node::new(vertex));
+        let node = &mut self.path.nodes[self.light];
+        if !space.world.trace_into(origin, direction, false, seed, &mut node.vertex) {
+            return Err(Reject::Lost);
+        }
+        node.arrived();
+        self.light += 1;
         self.to_light = -direction;
         Ok(())
     }
@@ -172,14 +235,13 @@ impl Proposal {
     /// The walk was lost or absorbed.
     pub fn sample_from_eye(&mut self, space: &Space<'_>, n: usize, rng: &mut Rng) -> Result<(), Reject> {
         for i in 0..n {
-            if self.tail.is_empty() {
+            if self.eye == self.path.nodes.len() {
                 self.path.raster = space.raster(rng.pair());
                 self.push_lens(space, rng.pair());
                 continue;
             }
             let kept = i == 0 && !self.new_lens;
-            let index = self.tail.len() - 1;
-            let vertex = &mut self.tail[index].vertex;
+            let vertex = &mut self.path.nodes[self.eye].vertex;
             if vertex.kind == Kind::Lens {
                 if kept {
                     self.path.raster = space.raster(rng.pair());
@@ -199,9 +261,7 @@ impl Proposal {
     /// There is none.
     pub fn go_from_lens(&mut self, space: &Space<'_>, rng: &mut Rng) -> Result<(), Reject> {
         let ray = space.world.camera.ray(self.path.raster, self.path.lens);
-        if let Some(lens) = self.tail.last_mut() {
-            lens.vertex.p = ray.origin;
-        }
+        self.path.nodes[self.eye].vertex.p = ray.origin;
         self.go_from_eye(space, ray.direction, rng)
     }
 
@@ -210,15 +270,19 @@ impl Proposal {
     /// # Errors
     /// There is nothing, or something follows the surroundings.
     pub fn go_from_eye(&mut self, space: &Space<'_>, direction: DVec3, rng: &mut Rng) -> Result<(), Reject> {
-        let from = &self.tail.last().ok_or(Reject::Lost)?.vertex;
+        let from = &self.path.nodes[self.eye].vertex;
         if from.infinite() {
             return Err(Reject::Lost);
         }
         let seed = if space.world.has_alpha() { rng.next_u32() } else { 0 };
         self.rays += 1;
-        let seen = space.world.trace(from.leave(direction), direction, from.kind == Kind::Lens, seed);
-        let seen = seen.or_else(|| space.world.lights.surroundings(direction)).ok_or(Reject::Lost)?;
-        self.tail.push(Node::new(seen));
+        let (origin, from_lens) = (from.leave(direction), from.kind == Kind::Lens);
+        let node = &mut self.path.nodes[self.eye - 1];
+        if !space.world.trace_into(origin, direction, from_lens, seed, &mut node.vertex) {
+            node.vertex = space.world.lights.surroundings(direction).ok_or(Reject::Lost)?;
+        }
+        node.arrived();
+        self.eye -= 1;
         self.to_eye = -direction;
         Ok(())
     }
@@ -228,9 +292,8 @@ impl Proposal {
     /// # Errors
     /// The surface has no such event.
     pub fn force_from_eye(&mut self, space: &Space<'_>, mode: Mode, rng: &mut Rng) -> Result<(), Reject> {
-        let to_eye = self.to_eye;
-        let vertex = &mut self.tail.last_mut().ok_or(Reject::Lost)?.vertex;
-        let direction = force(vertex, Side::TowardLight, to_eye, mode)?;
+        let vertex = &mut self.path.nodes[self.eye].vertex;
+        let direction = force(vertex, Side::TowardLight, self.to_eye, mode)?;
         self.go_from_eye(space, direction, rng)
     }
 
@@ -239,31 +302,18 @@ impl Proposal {
     /// # Errors
     /// The surface has no such event.
     pub fn force_from_light(&mut self, space: &Space<'_>, mode: Mode, rng: &mut Rng) -> Result<(), Reject> {
-        let to_light = self.to_light;
-        let vertex = &mut self.path.nodes.last_mut().ok_or(Reject::Lost)?.vertex;
-        let direction = force(vertex, Side::TowardEye, to_light, mode)?;
+        let vertex = &mut self.path.nodes[self.light - 1].vertex;
+        let direction = force(vertex, Side::TowardEye, self.to_light, mode)?;
         self.go_from_light(space, direction, rng)
     }
 
-    /// Joins both sides and the kept end of `x`, and measures the new path. A connection to the lens finds its raster
-    /// position.
+    /// Joins both sides, and measures the new path. A connection to the lens finds its raster position.
     ///
     /// # Errors
     /// Why the path carries no light.
-    pub fn join(&mut self, space: &Space<'_>, x: &Path) -> Result<(), Reject> {
-        let (stem, light_side) = (self.stem, self.path.nodes.len());
-        let eye_keeps = self.kept <= x.edges();
-        // The first vertex of the tail is a copy of the kept one, apart from the lens, which may have moved.
-        self.path.nodes.extend(self.tail.drain(..).rev());
-        let end = self.path.nodes.len() - 1;
-        if eye_keeps {
-            self.path.nodes.extend_from_slice(&x.nodes[self.kept + 1..]);
-        }
-        let k = self.path.edges();
-        if k < 2 || k > space.max_depth {
-            return Err(Reject::Unsuitable);
-        }
-        let connection = light_side.checked_sub(1);
+    pub fn join(&mut self, space: &Space<'_>) -> Result<(), Reject> {
+        debug_assert_eq!(self.light, self.eye, "vertices are missing");
+        let (k, connection) = (self.path.edges(), self.light.checked_sub(1));
         if connection == Some(k - 1) {
             self.connect_lens(space)?;
         }
@@ -271,11 +321,12 @@ impl Proposal {
             return Err(Reject::Black);
         }
         // The surroundings end a path; they are nowhere else.
-        if self.path.nodes[1..].iter().any(|node| node.vertex.infinite()) {
+        let inner = self.new.start.max(1)..self.new.end.max(1);
+        if self.path.nodes[inner].iter().any(|node| node.vertex.infinite()) {
             return Err(Reject::Lost);
         }
         self.rays += u64::from(connection.is_some());
-        self.path.measure(space, (stem.saturating_sub(1), end), connection)
+        self.path.measure(space, (self.new.start.saturating_sub(1), self.new.end.min(k)), connection)
     }
 
     fn connect_lens(&mut self, space: &Space<'_>) -> Result<(), Reject> {

@@ -10,7 +10,7 @@ use ajar_integrators::mlt::{
     chain::{Kernel, State, ratio},
     choice::{MAX_MUTATIONS, Selection, Table},
     mutations::{Bidirectional, mutations},
-    path::{Path, Space},
+    path::{Path, Signature, Space},
     proposal::Proposal,
     seeds::{Bootstrap, resample},
     target::{Aim, Target},
@@ -51,17 +51,16 @@ fn proposals_can_be_read_backwards() {
         let (mut y, mut rng) = (Proposal::default(), Rng::new(3, Purpose::Test, 0, 0));
         for mutation in &list {
             let mut proposals = 0;
-            for x in paths.iter().filter(|x| mutation.applies(x)) {
+            for x in paths.iter().filter(|x| mutation.applies(&x.signature)) {
+                y.follow(x);
                 let Ok(aux) = mutation.propose(&space, x, &mut y, &mut rng) else { continue };
                 proposals += 1;
-                let (forth, back) = (
-                    mutation.log_q(&space, x, &y.path, &aux),
-                    mutation.log_q(&space, &y.path, x, &aux.reverse()),
-                );
+                let (forth, back) =
+                    (mutation.q(&space, x, &y.path, &aux), mutation.q(&space, &y.path, x, &aux.reverse()));
                 // A mirror between two diffuse surfaces can be deleted but, alone, never be made again.
                 let no_way_back = x.density(aux.stem, aux.removed) == 0.0;
-                assert!(forth.is_finite() && (back.is_finite() || no_way_back), "{}", mutation.name());
-                assert!(mutation.applies(&y.path), "{}: no way back", mutation.name());
+                assert!(forth.is_normal() && (back.is_normal() || no_way_back), "{}", mutation.name());
+                assert!(mutation.applies(&y.path.signature), "{}: no way back", mutation.name());
                 assert_eq!(aux.reverse().reverse(), aux);
                 let mut again = y.path.clone();
                 let k = again.edges();
@@ -91,12 +90,13 @@ fn bidirectional_densities_are_true() {
     }
     let (mut y, mut rng) = (Proposal::default(), Rng::new(4, Purpose::Test, 0, 0));
     let x = paths.iter().find(|x| x.edges() == 3).unwrap();
+    y.follow(x);
     let mut sums = [[0.0; 2]; 16];
     for _ in 0..PROPOSALS {
         let Ok(aux) = Bidirectional.propose(&space, x, &mut y, &mut rng) else { continue };
         if (aux.stem, aux.removed) == (0, x.edges() + 1) {
             // Splits are not summed over by the proposal, which chooses one of them: the density already does.
-            let value = (-Bidirectional.log_q(&space, x, &y.path, &aux)).exp();
+            let value = 1.0 / Bidirectional.q(&space, x, &y.path, &aux);
             let sum = &mut sums[y.path.edges()];
             sum[0] += value;
             sum[1] += value * value;
@@ -114,6 +114,7 @@ fn bidirectional_densities_are_true() {
 /// A mutation of a world with few states, told apart by their raster position: from state i to j with chance q_ij.
 struct Discrete {
     q: Vec<Vec<f64>>,
+    /// By the number of edges.
     applies: fn(usize) -> bool,
 }
 
@@ -125,14 +126,14 @@ impl Mutation for Discrete {
     fn name(&self) -> &'static str {
         "discrete"
     }
-    fn applies(&self, x: &Path) -> bool {
-        (self.applies)(state(x))
+    fn applies(&self, x: &Signature) -> bool {
+        (self.applies)(x.edges())
     }
     fn propose(&self, _: &Space<'_>, _: &Path, _: &mut Proposal, _: &mut Rng) -> Result<Aux, Reject> {
         Err(Reject::Unsuitable)
     }
-    fn log_q(&self, _: &Space<'_>, x: &Path, y: &Path, _: &Aux) -> f64 {
-        (self.q[state(x)][state(y)] / y.scalar()).ln()
+    fn q(&self, _: &Space<'_>, x: &Path, y: &Path, _: &Aux) -> f64 {
+        self.q[state(x)][state(y)] / y.scalar()
     }
 }
 
@@ -166,7 +167,7 @@ fn the_driver_keeps_the_target_of_a_discrete_world() {
         (0..paths.len()).map(|_| row(&mut rng)).collect()
     };
     let (a, b) =
-        (Discrete { q: matrix(), applies: |_| true }, Discrete { q: matrix(), applies: |i| i % 4 != 1 });
+        (Discrete { q: matrix(), applies: |_| true }, Discrete { q: matrix(), applies: |edges| edges != 3 });
     let list: [&dyn Mutation; 2] = [&a, &b];
     let mut table = Table::uniform(&[0.4, 0.9]);
     for (class, row) in table.weights.iter_mut().enumerate() {
@@ -175,7 +176,8 @@ fn the_driver_keeps_the_target_of_a_discrete_world() {
     let kernel = Kernel { space, mutations: &list, table: &table, target: &Weighed };
     assert!(list.len() < MAX_MUTATIONS);
     let aims: Vec<Aim> = paths.iter().map(|p| Weighed.aim(p)).collect();
-    let selections: Vec<Selection> = paths.iter().map(|p| Selection::at(p, &list, &table)).collect();
+    let selections: Vec<Selection> =
+        paths.iter().map(|p| Selection::at(&p.signature, &list, &table)).collect();
     let at = |i: usize| State { path: &paths[i], aim: &aims[i], selection: &selections[i] };
     let target = |i: usize| paths[i].scalar() * aims[i].weight;
     let worst = |without_selection: bool| {

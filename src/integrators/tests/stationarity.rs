@@ -12,7 +12,7 @@ use ajar_integrators::mlt::{
     mutations::{
         Bidirectional, Caustic, Chances, Lens, LensSubpath, MultiChain, Technique, Window, mutations,
     },
-    path::{Path, Space},
+    path::{Path, Signature, Space},
     proposal::Proposal,
     target::{Plain, Target},
 };
@@ -77,7 +77,7 @@ fn under_another_target() {
     check(scene("mirror and glass"), &mutations(&BTreeMap::new()).0, &Tilted);
 }
 
-/// A mutation that gets its density wrong by the exponential of `error`.
+/// A mutation that gets its density wrong by the factor `error`.
 struct Broken<'a> {
     inner: &'a dyn Mutation,
     error: fn(&Space<'_>, &Path, &Path, &Aux) -> f64,
@@ -87,14 +87,14 @@ impl Mutation for Broken<'_> {
     fn name(&self) -> &'static str {
         self.inner.name()
     }
-    fn applies(&self, x: &Path) -> bool {
+    fn applies(&self, x: &Signature) -> bool {
         self.inner.applies(x)
     }
     fn propose(&self, space: &Space<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Result<Aux, Reject> {
         self.inner.propose(space, x, y, rng)
     }
-    fn log_q(&self, space: &Space<'_>, x: &Path, y: &Path, aux: &Aux) -> f64 {
-        self.inner.log_q(space, x, y, aux) + (self.error)(space, x, y, aux)
+    fn q(&self, space: &Space<'_>, x: &Path, y: &Path, aux: &Aux) -> f64 {
+        self.inner.q(space, x, y, aux) * (self.error)(space, x, y, aux)
     }
 }
 
@@ -102,16 +102,16 @@ impl Mutation for Broken<'_> {
 fn a_wrong_factor_shows() {
     type Error = fn(&Space<'_>, &Path, &Path, &Aux) -> f64;
     let variants: [(&str, &dyn Mutation, Error); 8] = [
-        ("without p_d", &Bidirectional, |space, x, _, aux| -Chances::new(space, x, aux).range.ln()),
-        ("without p_a", &Bidirectional, |space, x, _, aux| -Chances::new(space, x, aux).length.ln()),
+        ("without p_d", &Bidirectional, |space, x, _, aux| 1.0 / Chances::new(space, x, aux).range),
+        ("without p_a", &Bidirectional, |space, x, _, aux| 1.0 / Chances::new(space, x, aux).length),
         ("without the choice of the split", &Bidirectional, |space, x, _, aux| {
-            -Chances::new(space, x, aux).split.ln()
+            1.0 / Chances::new(space, x, aux).split
         }),
-        ("without the samplers' densities", &Technique, |_, _, y, aux| -y.density(0, aux.added).ln()),
-        ("without the samplers' densities", &Window, |_, _, y, aux| -y.density(aux.stem, aux.added).ln()),
-        ("without the camera's density", &Lens, |_, _, y, _| -y.nodes[y.edges()].to_light.ln()),
-        ("without importance", &Caustic, |_, _, y, _| y.nodes[y.edges()].to_light.ln()),
-        ("without the contribution", &MultiChain, |_, _, y, _| y.scalar().ln()),
+        ("without the samplers' densities", &Technique, |_, _, y, aux| 1.0 / y.density(0, aux.added)),
+        ("without the samplers' densities", &Window, |_, _, y, aux| 1.0 / y.density(aux.stem, aux.added)),
+        ("without the camera's density", &Lens, |_, _, y, _| 1.0 / y.nodes[y.edges()].to_light),
+        ("without importance", &Caustic, |_, _, y, _| y.nodes[y.edges()].to_light),
+        ("without the contribution", &MultiChain, |_, _, y, _| y.scalar()),
     ];
     for (what, inner, error) in variants {
         let broken = Broken { inner, error };

@@ -4,7 +4,7 @@ use ajar_render::rng::Rng;
 
 use super::super::{
     Aux, Mutation, Reject,
-    path::{Path, Space},
+    path::{Path, Signature, Space},
     proposal::Proposal,
 };
 
@@ -17,7 +17,7 @@ impl Mutation for Bidirectional {
         "bidirectional"
     }
 
-    fn applies(&self, _: &Path) -> bool {
+    fn applies(&self, _: &Signature) -> bool {
         true
     }
 
@@ -34,16 +34,16 @@ impl Mutation for Bidirectional {
             return Err(Reject::Unsuitable);
         }
         let from_light = least + rng.below(most + 1 - least);
-        y.begin(x, stem, kept);
+        y.begin(space, x, (stem, kept, added))?;
         y.sample_from_light(space, from_light, rng)?;
         y.sample_from_eye(space, added - from_light, rng)?;
-        y.join(space, x)?;
+        y.join(space)?;
         Ok(Aux { stem, removed, added, ..Aux::default() })
     }
 
-    fn log_q(&self, space: &Space<'_>, x: &Path, y: &Path, aux: &Aux) -> f64 {
+    fn q(&self, space: &Space<'_>, x: &Path, y: &Path, aux: &Aux) -> f64 {
         let Chances { range, length, split } = Chances::new(space, x, aux);
-        (range * length * split * y.density(aux.stem, aux.added) / y.scalar()).ln()
+        range * length * split * y.density(aux.stem, aux.added) / y.scalar()
     }
 }
 
@@ -85,17 +85,15 @@ pub(super) struct Ranges {
     edges: usize,
 }
 
-/// Longest deletion that is considered on its own; all longer ones share a probability scale of 2^-64.
-const WEIGHT_BITS: i32 = 64;
+/// 2⁻ⁿ; 2⁻⁶³ for all larger n.
+fn half_to(n: usize) -> f64 {
+    1.0 / (1u64 << n.min(63)) as f64
+}
 
 impl Ranges {
     pub(super) fn of(x: &Path) -> Self {
         let k = x.edges();
-        let mut ends = 1 | 1 << (k + 2);
-        for i in 0..=k {
-            ends |= u128::from(x.connectable(i)) << (i + 1);
-        }
-        Self { ends, edges: k }
+        Self { ends: 1 | 1 << (k + 2) | x.signature.ends() << 1, edges: k }
     }
 
     /// Stems for a deletion of `length` edges, as bits.
@@ -112,7 +110,7 @@ impl Ranges {
         match length {
             1 => 0.25,
             2 => 0.5,
-            n => f64::powi(2.0, -(n as i32).min(WEIGHT_BITS)),
+            n => half_to(n),
         }
     }
 
@@ -175,13 +173,13 @@ impl Lengths {
         match change {
             0 => 0.5,
             1 => 0.15,
-            n => 0.2 * f64::powi(2.0, -(n as i32).min(WEIGHT_BITS)),
+            n => 0.2 * half_to(n),
         }
     }
 
     /// Sum of the weights of changes 1 to `n`.
     fn up_to(n: usize) -> f64 {
-        if n == 0 { 0.0 } else { 0.15 + 0.2 * (0.5 - f64::powi(2.0, -(n as i32).min(WEIGHT_BITS))) }
+        if n == 0 { 0.0 } else { 0.15 + 0.2 * (0.5 - half_to(n)) }
     }
 
     fn total(&self) -> f64 {

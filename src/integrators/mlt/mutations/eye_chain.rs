@@ -7,7 +7,7 @@ use ajar_render::rng::Rng;
 
 use super::super::{
     Aux, Mutation, Reject,
-    path::{Path, Space},
+    path::{Path, Signature, Space},
     perturb::{raster_offset, turn},
     proposal::Proposal,
 };
@@ -29,7 +29,7 @@ struct Moving {
 }
 
 /// From the lens to the first smooth vertex that has a connectable one before it, or to the light.
-fn moving(x: &Path) -> Moving {
+fn moving(x: &Signature) -> Moving {
     let mut turns = 0;
     for i in (1..x.edges()).rev() {
         if x.connectable(i) {
@@ -43,8 +43,8 @@ fn moving(x: &Path) -> Moving {
 }
 
 fn propose(space: &Space<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Result<Aux, Reject> {
-    let (Moving { end, .. }, k) = (moving(x), x.edges());
-    y.begin(x, end, k);
+    let (Moving { end, .. }, k) = (moving(&x.signature), x.edges());
+    y.begin(space, x, (end, k, k - end))?;
     y.move_raster(space, raster_offset(space, rng))?;
     y.go_from_lens(space, rng)?;
     for i in (end + 1..k).rev() {
@@ -55,11 +55,11 @@ fn propose(space: &Space<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Resu
             y.force_from_eye(space, x.nodes[i].vertex.mode, rng)?;
         }
     }
-    y.join(space, x)?;
+    y.join(space)?;
     Ok(Aux { stem: end, removed: k - end, added: k - end, ..Aux::default() })
 }
 
-fn log_q(y: &Path, aux: &Aux) -> f64 {
+fn q(y: &Path, aux: &Aux) -> f64 {
     let (end, k) = (aux.stem, y.edges());
     // Raster positions and directions move by densities that are the same back and forth.
     let mut density = y.nodes[k].to_light;
@@ -72,7 +72,7 @@ fn log_q(y: &Path, aux: &Aux) -> f64 {
         };
     }
     let passed = if end > 0 { y.nodes[end - 1].passed } else { 1.0 };
-    (density / (passed * y.scalar())).ln()
+    density / (passed * y.scalar())
 }
 
 impl Mutation for Lens {
@@ -80,7 +80,7 @@ impl Mutation for Lens {
         "lens"
     }
 
-    fn applies(&self, x: &Path) -> bool {
+    fn applies(&self, x: &Signature) -> bool {
         moving(x).turns == 0
     }
 
@@ -88,8 +88,8 @@ impl Mutation for Lens {
         propose(space, x, y, rng)
     }
 
-    fn log_q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
-        log_q(y, aux)
+    fn q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
+        q(y, aux)
     }
 }
 
@@ -98,7 +98,7 @@ impl Mutation for MultiChain {
         "multi-chain"
     }
 
-    fn applies(&self, x: &Path) -> bool {
+    fn applies(&self, x: &Signature) -> bool {
         moving(x).turns > 0
     }
 
@@ -106,7 +106,7 @@ impl Mutation for MultiChain {
         propose(space, x, y, rng)
     }
 
-    fn log_q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
-        log_q(y, aux)
+    fn q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
+        q(y, aux)
     }
 }

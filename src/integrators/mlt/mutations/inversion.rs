@@ -17,7 +17,7 @@ use glam::DVec3;
 use super::{
     super::{
         Aux, Mutation, Reject,
-        path::{Node, Path, Space},
+        path::{Node, Path, Signature, Space},
         perturb::{raster_offset, unit_offset},
         proposal::Proposal,
     },
@@ -37,7 +37,7 @@ impl Mutation for Technique {
         "technique"
     }
 
-    fn applies(&self, _: &Path) -> bool {
+    fn applies(&self, _: &Signature) -> bool {
         true
     }
 
@@ -45,8 +45,8 @@ impl Mutation for Technique {
         propose(space, x, y, (0, x.edges() + 1), rng)
     }
 
-    fn log_q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
-        log_q(y, aux)
+    fn q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
+        q(y, aux)
     }
 }
 
@@ -55,7 +55,7 @@ impl Mutation for Window {
         "window"
     }
 
-    fn applies(&self, _: &Path) -> bool {
+    fn applies(&self, _: &Signature) -> bool {
         true
     }
 
@@ -65,13 +65,13 @@ impl Mutation for Window {
         propose(space, x, y, (stem, length - 1), rng)
     }
 
-    fn log_q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
-        log_q(y, aux)
+    fn q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
+        q(y, aux)
     }
 }
 
-fn log_q(y: &Path, aux: &Aux) -> f64 {
-    (y.density(aux.stem, aux.added) / y.scalar()).ln() - aux.labels[1]
+fn q(y: &Path, aux: &Aux) -> f64 {
+    y.density(aux.stem, aux.added) / (y.scalar() * aux.labels[1])
 }
 
 /// Moves the `count` vertices from x_stem on.
@@ -83,23 +83,23 @@ fn propose(
     rng: &mut Rng,
 ) -> Result<Aux, Reject> {
     let split = choose_split(x, stem, count, rng).ok_or(Reject::Unsuitable)?;
-    y.begin(x, stem, stem + count);
-    let mut labels = [0.0; 2];
+    y.begin(space, x, (stem, stem + count, count))?;
+    let mut labels = [1.0; 2];
     for i in stem..stem + split {
         move_from_light(space, x, y, i, &mut labels, rng)?;
     }
     for i in (stem + split..stem + count).rev() {
         move_from_eye(space, x, y, i, &mut labels, rng)?;
     }
-    y.join(space, x)?;
+    y.join(space)?;
     // Dirac events are labels too; both paths have them at the same places.
     let chance = |node: &Node, i: usize| {
         if (stem..stem + split).contains(&(i + 1)) { node.chance_to_eye } else { node.chance_to_light }
     };
     let sources = stem.saturating_sub(1)..(stem + count + 1).min(x.nodes.len());
     for i in sources.filter(|&i| !x.connectable(i)) {
-        labels[0] += chance(&x.nodes[i], i).ln();
-        labels[1] += chance(&y.path.nodes[i], i).ln();
+        labels[0] *= chance(&x.nodes[i], i);
+        labels[1] *= chance(&y.path.nodes[i], i);
     }
     Ok(Aux { stem, removed: count, added: count, labels })
 }
@@ -231,8 +231,8 @@ fn turn_scattering(
     if sample.mode != Mode::Smooth {
         return Err(Reject::Unsuitable);
     }
-    labels[0] += weights[lobe].ln();
-    labels[1] += weight.ln();
+    labels[0] *= weights[lobe];
+    labels[1] *= weight;
     Ok(y.frame.to_world(sample.direction))
 }
 

@@ -175,6 +175,61 @@ fn partial_opacity() -> World {
     b.world(32)
 }
 
+/// A room that gets all its light through the gap of a door, from an emitter in the next room: a metal ball, a glass one
+/// and a block on a table, everything else diffuse and flat.
+pub const DOOR_AJAR: TestScene = scene("door ajar", 16, door_ajar);
+
+fn door_ajar() -> World {
+    let mut b = Builder::default();
+    let (white, wood) = (b.diffuse(Vec3::splat(0.73)), b.diffuse(Vec3::new(0.5, 0.4, 0.3)));
+    let red = b.diffuse(Vec3::new(0.6, 0.2, 0.15));
+    let metal = b.material(Material {
+        base_color: Input::constant(Vec3::ONE),
+        metallic: Input::constant(1.0),
+        roughness: Input::constant(0.3),
+        ..Material::default()
+    });
+    let glass = b.material(Material {
+        base_color: Input::constant(Vec3::ONE),
+        transmission: Input::constant(1.0),
+        roughness: Input::constant(0.0),
+        ..Material::default()
+    });
+    let lamp = b.emitter(Vec3::new(1000.0, 900.0, 700.0));
+    let mut block = |low: [f32; 3], high: [f32; 3], material| {
+        b.mesh(shapes::cuboid(low.into(), high.into(), false), material);
+    };
+    // Floor, ceiling and outer walls; the camera's room ends at z = -2, the bright one at z = -4.5.
+    block([-2.2, -0.2, -4.7], [2.2, 0.0, 2.2], wood);
+    block([-2.2, 2.6, -4.7], [2.2, 2.8, 2.2], white);
+    block([-2.2, -0.1, -4.7], [-2.0, 2.7, 2.2], white);
+    block([2.0, -0.1, -4.7], [2.2, 2.7, 2.2], white);
+    block([-2.2, -0.1, 2.0], [2.2, 2.7, 2.2], white);
+    block([-2.2, -0.1, -4.7], [2.2, 2.7, -4.5], white);
+    // The wall between, with its opening.
+    block([-2.1, -0.1, -2.1], [0.4, 2.7, -2.0], white);
+    block([1.3, -0.1, -2.1], [2.1, 2.7, -2.0], white);
+    block([0.3, 2.05, -2.1], [1.4, 2.7, -2.0], white);
+    // The table and the block on it.
+    block([-1.0, 0.7, -0.7], [0.4, 0.75, 0.2], wood);
+    for (x, z) in [(-0.95, -0.65), (0.3, -0.65), (-0.95, 0.1), (0.3, 0.1)] {
+        block([x, -0.01, z], [x + 0.05, 0.71, z + 0.05], wood);
+    }
+    block([-0.85, 0.75, -0.4], [-0.6, 1.0, -0.15], red);
+    // The door hangs on the right and opens towards the camera by five degrees.
+    let mut door = shapes::cuboid(Vec3::new(-0.898, 0.003, -0.04), Vec3::new(0.0, 2.045, 0.0), false);
+    let turn = glam::Quat::from_rotation_y(5f32.to_radians());
+    for p in &mut door.positions {
+        *p = turn * *p + Vec3::new(1.299, 0.0, -2.0);
+    }
+    b.mesh(door, red);
+    b.mesh(shapes::sphere(Vec3::new(-0.3, 0.9, -0.35), 0.15, 24, true), metal);
+    b.mesh(shapes::sphere(Vec3::new(0.05, 0.9, -0.2), 0.15, 24, true), glass);
+    b.mesh(shapes::quad(Vec3::new(-1.5, 0.6, -4.48), Vec3::X * 2.1, Vec3::Y * 1.6), lamp);
+    b.camera(pinhole(45f32.to_radians()), DVec3::new(-1.0, 1.45, 1.7), DVec3::new(-0.05, 0.85, -0.9));
+    b.world(32)
+}
+
 /// Caustics of a light without extent, which path tracing does not find.
 pub const POINT_LIGHT_AND_GLASS: TestScene = scene("point light and glass", 6, point_light_and_glass);
 

@@ -41,7 +41,7 @@ fn features(path: &Path, world: &World) -> [usize; 6] {
     let (a, b, c) = (TILES * TILES * LENGTHS, CLASSES, TILES * TILES);
     [
         tile * LENGTHS + length,
-        a + class(path),
+        a + class(&path.signature),
         a + b + tile,
         a + b + c + length,
         a + b + c + LENGTHS + red,
