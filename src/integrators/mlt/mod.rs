@@ -6,6 +6,7 @@ pub mod chains;
 pub mod choice;
 mod direct;
 mod estimator;
+mod manifold;
 pub mod mutation;
 pub mod mutations;
 pub mod path;

@@ -307,6 +307,15 @@ impl Proposal {
         self.go_from_light(space, direction, rng)
     }
 
+    /// Adds vertices with their modes to the light's side.
+    pub fn place_from_light(&mut self, vertices: &[Vertex]) {
+        for vertex in vertices {
+            self.path.nodes[self.light].vertex = *vertex;
+            self.path.nodes[self.light].arrived();
+            self.light += 1;
+        }
+    }
+
     /// Joins both sides, and measures the new path. A connection to the lens finds its raster position.
     ///
     /// # Errors

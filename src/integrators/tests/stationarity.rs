@@ -10,7 +10,8 @@ use std::collections::BTreeMap;
 use ajar_integrators::mlt::{
     Aux, Mutation, Reject,
     mutations::{
-        Bidirectional, Caustic, Chances, Lens, LensSubpath, MultiChain, Technique, Window, mutations,
+        Bidirectional, Caustic, Chances, EyeChain, Lens, LensSubpath, LightChain, Manifold, MultiChain,
+        Technique, Window, mutations,
     },
     path::{Path, Signature, Space},
     proposal::Proposal,
@@ -51,6 +52,9 @@ fn every_mutation_alone() {
         (&Window, ["rough metal and plastic", "mirror and glass"]),
         (&Technique, ["rough metal and plastic", "mirror and glass"]),
         (&LensSubpath, ["rough metal and plastic", "mirror and glass"]),
+        (&EyeChain, ["rough metal and plastic", "mirror and glass"]),
+        (&LightChain, ["rough metal and plastic", "mirror and glass"]),
+        (&Manifold, ["mirror and glass", "orthographic"]),
     ] {
         let distinct = if scenes[0] == scenes[1] { &scenes[..1] } else { &scenes[..] };
         distinct.iter().for_each(|name| check(scene(name), &[mutation], &Plain));

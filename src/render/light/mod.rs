@@ -103,6 +103,11 @@ impl Lights {
         self.len() > self.dirac.len()
     }
 
+    /// Radius of the sphere around everything that lights infinitely far shine at, metres.
+    pub fn reach(&self) -> f64 {
+        self.radius
+    }
+
     /// The surroundings.
     pub fn environment(&self) -> Option<&Environment> {
         self.environment.as_ref()

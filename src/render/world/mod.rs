@@ -1,10 +1,12 @@
 //! The world: a scene prepared for rendering, read-only from then on.
 
 mod cast;
+mod differential;
 mod emission;
 mod prepare;
 mod surface;
 
+pub use differential::Differential;
 pub use prepare::{PrepareOptions, prepare};
 
 use ajar_scene::{Id, Mesh, Node, Scene};

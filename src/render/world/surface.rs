@@ -33,8 +33,15 @@ impl Point<'_> {
         (a * self.weights[0] + b * self.weights[1] + c * self.weights[2]).as_vec2()
     }
 
+    /// Normals of the triangle's vertices, if the mesh has some.
     #[inline]
-    fn mix3(&self, values: &[DVec3; 3]) -> DVec3 {
+    pub(super) fn normals(&self) -> Option<[DVec3; 3]> {
+        let normals = self.mesh.normals.as_ref()?;
+        Some(self.corners().map(|i| normals[i].as_dvec3()))
+    }
+
+    #[inline]
+    pub(super) fn mix3(&self, values: &[DVec3; 3]) -> DVec3 {
         values[0] * self.weights[0] + values[1] * self.weights[1] + values[2] * self.weights[2]
     }
 }
@@ -129,11 +136,9 @@ impl World {
     #[inline]
     fn shading_frame(&self, instance: &Instance, material: &Material, point: &Point<'_>, ng: DVec3) -> Frame {
         let in_front = |n: DVec3| if n.dot(ng) < 0.0 { -n } else { n };
-        let smooth = point.mesh.normals.as_ref().and_then(|normals| {
-            let [a, b, c] = point.corners();
-            let local = point.mix3(&[normals[a].as_dvec3(), normals[b].as_dvec3(), normals[c].as_dvec3()]);
-            (instance.normal_to_world * local).try_normalize()
-        });
+        let smooth = point
+            .normals()
+            .and_then(|normals| (instance.normal_to_world * point.mix3(&normals)).try_normalize());
         let ns = smooth.map_or(ng, in_front);
         let Some(tangent) = self.tangent(instance, point) else { return Frame::from_z(ns) };
         let frame = Frame::from_zx(ns, instance.to_world.transform_vector3(tangent.truncate()));

@@ -21,15 +21,15 @@ pub struct Lens;
 pub struct MultiChain;
 
 /// The part of the path that moves.
-struct Moving {
+pub(super) struct Moving {
     /// Index of the last moving vertex, counted from the lens: a smooth one or the light.
-    end: usize,
+    pub(super) end: usize,
     /// Smooth vertices between chains.
     turns: usize,
 }
 
 /// From the lens to the first smooth vertex that has a connectable one before it, or to the light.
-fn moving(x: &Signature) -> Moving {
+pub(super) fn moving(x: &Signature) -> Moving {
     let mut turns = 0;
     for i in (1..x.edges()).rev() {
         if x.connectable(i) {
@@ -59,18 +59,22 @@ fn propose(space: &Space<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Resu
     Ok(Aux { stem: end, removed: k - end, added: k - end, ..Aux::default() })
 }
 
+/// Density of x_{i-1} as a perturbation from the eye makes it from x_i, up to a factor that is the same back and forth:
+/// raster positions and directions move by kernels that are symmetric, Dirac events are forced.
+pub(super) fn step_density(x: &Path, i: usize) -> f64 {
+    let node = &x.nodes[i];
+    if i == x.edges() {
+        node.to_light
+    } else if x.connectable(i) {
+        x.nodes[i - 1].edge.density(1.0, &node.vertex, &x.nodes[i - 1].vertex, false)
+    } else {
+        node.to_light / node.chance_to_light
+    }
+}
+
 fn q(y: &Path, aux: &Aux) -> f64 {
     let (end, k) = (aux.stem, y.edges());
-    // Raster positions and directions move by densities that are the same back and forth.
-    let mut density = y.nodes[k].to_light;
-    for i in end + 1..k {
-        let node = &y.nodes[i];
-        density *= if y.connectable(i) {
-            y.nodes[i - 1].edge.density(1.0, &node.vertex, &y.nodes[i - 1].vertex, false)
-        } else {
-            node.to_light / node.chance_to_light
-        };
-    }
+    let density: f64 = (end + 1..=k).map(|i| step_density(y, i)).product();
     let passed = if end > 0 { y.nodes[end - 1].passed } else { 1.0 };
     density / (passed * y.scalar())
 }

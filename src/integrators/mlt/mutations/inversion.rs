@@ -22,6 +22,7 @@ use super::{
         proposal::Proposal,
     },
     bidirectional::Ranges,
+    eye_chain::moving,
 };
 
 /// Moves the whole path.
@@ -31,6 +32,25 @@ pub struct Technique;
 /// Moves a piece of the path, chosen as the bidirectional mutation does.
 #[derive(Clone, Copy, Debug)]
 pub struct Window;
+
+/// Moves everything from the lens to the first vertex that can be connected: rough mirrors and lens points too.
+#[derive(Clone, Copy, Debug)]
+pub struct EyeChain;
+
+/// Moves everything from the light to the first vertex that can be connected.
+#[derive(Clone, Copy, Debug)]
+pub struct LightChain;
+
+/// What moves.
+#[derive(Clone, Copy)]
+struct Piece {
+    /// Vertices kept on the light's side.
+    stem: usize,
+    /// Vertices that move.
+    count: usize,
+    /// How many of them are made from the light's side; `None`: drawn in proportion to the density of doing so.
+    split: Option<usize>,
+}
 
 impl Mutation for Technique {
     fn name(&self) -> &'static str {
@@ -42,11 +62,11 @@ impl Mutation for Technique {
     }
 
     fn propose(&self, space: &Space<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Result<Aux, Reject> {
-        propose(space, x, y, (0, x.edges() + 1), rng)
+        propose(space, x, y, Piece { stem: 0, count: x.edges() + 1, split: None }, rng)
     }
 
     fn q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
-        q(y, aux)
+        q_of_all_splits(y, aux)
     }
 }
 
@@ -62,27 +82,78 @@ impl Mutation for Window {
     fn propose(&self, space: &Space<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Result<Aux, Reject> {
         // Modes do not change, so that the chance of this piece is the same at x and at y.
         let (length, stem) = Ranges::of(x).choose(2, rng).ok_or(Reject::Unsuitable)?;
-        propose(space, x, y, (stem, length - 1), rng)
+        propose(space, x, y, Piece { stem, count: length - 1, split: None }, rng)
     }
 
     fn q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
-        q(y, aux)
+        q_of_all_splits(y, aux)
     }
 }
 
-fn q(y: &Path, aux: &Aux) -> f64 {
+impl Mutation for EyeChain {
+    fn name(&self) -> &'static str {
+        "eye-chain"
+    }
+
+    fn applies(&self, x: &Signature) -> bool {
+        !x.is_lit_from_far() || moving(x).end > 0
+    }
+
+    fn propose(&self, space: &Space<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Result<Aux, Reject> {
+        let stem = moving(&x.signature).end;
+        if stem == 0 && !x.nodes[0].vertex.can_be_met() {
+            return Err(Reject::Unsuitable);
+        }
+        propose(space, x, y, Piece { stem, count: x.edges() + 1 - stem, split: Some(0) }, rng)
+    }
+
+    fn q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
+        let density: f64 = (aux.stem..=y.edges()).map(|i| y.from_eye(i)).product();
+        let passed = if aux.stem > 0 { y.nodes[aux.stem - 1].passed } else { 1.0 };
+        density / (passed * y.scalar() * aux.labels[1])
+    }
+}
+
+/// The first vertex from the light whose neighbour towards the eye it can be connected with.
+fn first_pair(x: &Signature) -> Option<usize> {
+    (0..x.edges()).find(|&i| x.connectable(i) && x.connectable(i + 1))
+}
+
+impl Mutation for LightChain {
+    fn name(&self) -> &'static str {
+        "light-chain"
+    }
+
+    fn applies(&self, x: &Signature) -> bool {
+        first_pair(x).is_some()
+    }
+
+    fn propose(&self, space: &Space<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Result<Aux, Reject> {
+        let count = first_pair(&x.signature).ok_or(Reject::Unsuitable)? + 1;
+        propose(space, x, y, Piece { stem: 0, count, split: Some(count) }, rng)
+    }
+
+    fn q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
+        let density: f64 = (0..aux.added).map(|i| y.from_light(i)).product();
+        density / (y.nodes[aux.added - 1].passed * y.scalar() * aux.labels[1])
+    }
+}
+
+fn q_of_all_splits(y: &Path, aux: &Aux) -> f64 {
     y.density(aux.stem, aux.added) / (y.scalar() * aux.labels[1])
 }
 
-/// Moves the `count` vertices from x_stem on.
 fn propose(
     space: &Space<'_>,
     x: &Path,
     y: &mut Proposal,
-    (stem, count): (usize, usize),
+    Piece { stem, count, split }: Piece,
     rng: &mut Rng,
 ) -> Result<Aux, Reject> {
-    let split = choose_split(x, stem, count, rng).ok_or(Reject::Unsuitable)?;
+    let split = match split {
+        Some(split) => split,
+        None => choose_split(x, stem, count, rng).ok_or(Reject::Unsuitable)?,
+    };
     y.begin(space, x, (stem, stem + count, count))?;
     let mut labels = [1.0; 2];
     for i in stem..stem + split {

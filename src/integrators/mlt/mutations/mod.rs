@@ -7,12 +7,14 @@ mod caustic;
 mod eye_chain;
 mod inversion;
 mod lens_subpath;
+mod manifold;
 
 pub use bidirectional::{Bidirectional, Chances};
 pub use caustic::Caustic;
 pub use eye_chain::{Lens, MultiChain};
-pub use inversion::{Technique, Window};
+pub use inversion::{EyeChain, LightChain, Technique, Window};
 pub use lens_subpath::LensSubpath;
+pub use manifold::Manifold;
 
 use super::{
     Mutation,
@@ -21,14 +23,17 @@ use super::{
 
 /// All mutations. Where no two neighbours of a path can be connected, only a move of the whole path changes what mirrors
 /// and lenses see: the second weight is for such paths (design notes, evidence 7).
-const LIST: [(&dyn Mutation, f64, f64); 7] = [
+const LIST: [(&dyn Mutation, f64, f64); 10] = [
     (&Bidirectional, 0.25, 0.25),
     (&Lens, 0.4, 0.4),
     (&Caustic, 0.1, 0.1),
     (&MultiChain, 0.4, 0.4),
     (&Window, 0.2, 0.2),
     (&Technique, 0.05, 0.3),
+    (&EyeChain, 0.05, 0.05),
+    (&LightChain, 0.05, 0.05),
     (&LensSubpath, 0.05, 0.05),
+    (&Manifold, 0.05, 0.05),
 ];
 
 /// Names of all mutations.

@@ -1,6 +1,7 @@
 //! "Getting it right" (Geweke 2004; mlt.md §8 V5): chains that start from exact samples of the target must not leave it.
 //!
-//! Each seed is compared with what its own chain becomes, so that the noise of the seeds cancels.
+//! Each seed is compared with what its own chain becomes, so that the noise of the seeds cancels. What is independent are
+//! the samples that gave the seeds: all chains from paths of one sample, copies of a heavy path among them, count as one.
 
 use ajar_integrators::{
     Settings,
@@ -119,27 +120,32 @@ pub fn drift(
     let table = Table::uniform(&vec![1.0; mutations.len()]);
     let kernel = Kernel { space, mutations, table: &table, target };
     let stream = |i: usize| Rng::new(settings.seed, Purpose::Chain, steps, i as u64);
-    // Seeds are in the order of length and place: each block takes some of all.
+    let mut by_sample: Vec<(u32, usize)> =
+        chosen.iter().enumerate().map(|(i, &seed)| (candidates[seed as usize].sample, i)).collect();
+    by_sample.sort_unstable();
     let blocks: Vec<_> = (0..BLOCKS)
         .into_par_iter()
         .map(|block| {
             let (mut tracer, mut path) = (bootstrap.tracer(), Path::with_capacity());
             let mut chain = Chain::new(kernel, stream(0));
             let mut sums = [[0.0; 3]; COUNT];
-            for (i, &seed) in chosen.iter().skip(block).step_by(BLOCKS).enumerate() {
-                if bootstrap.replay(&candidates[seed as usize], &mut tracer, &mut path).is_none() {
-                    continue;
-                }
-                let strata = Strata::new(i as u32, seeds.div_ceil(BLOCKS) as u32, block as u64);
-                chain.start(&path, stream(block << 32 | i), strata);
+            let mine =
+                by_sample.chunk_by(|a, b| a.0 == b.0).filter(|one| one[0].0 as usize % BLOCKS == block);
+            for sample in mine {
                 let mut change = Vec::<(usize, f64)>::new();
-                for q in features(&path, world) {
-                    change.push((q, -1.0));
-                    sums[q][2] += 1.0;
+                for &(_, i) in sample {
+                    if bootstrap.replay(&candidates[chosen[i] as usize], &mut tracer, &mut path).is_none() {
+                        continue;
+                    }
+                    chain.start(&path, stream(i), Strata::new(i as u32, seeds as u32, 0));
+                    for q in features(&path, world) {
+                        change.push((q, -1.0));
+                        sums[q][2] += 1.0;
+                    }
+                    chain.run(steps, |path, _, weight| {
+                        change.extend(features(path, world).map(|q| (q, weight / f64::from(steps))));
+                    });
                 }
-                chain.run(steps, |path, _, weight| {
-                    change.extend(features(path, world).map(|q| (q, weight / f64::from(steps))));
-                });
                 change.sort_by_key(|c| c.0);
                 for run in change.chunk_by(|a, b| a.0 == b.0) {
                     let d: f64 = run.iter().map(|c| c.1).sum();
