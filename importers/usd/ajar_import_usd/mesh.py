@@ -115,7 +115,9 @@ def finish(
     for index, name in enumerate(sets):
         found = primvars.texture_coordinates(walk, prim, name, sizes) if index in wanted else None
         if found is None and index in wanted:
-            walk.report.approximate(prim.GetPath(), f"there are no texture coordinates {name!r}, which the material reads")
+            walk.report.approximate(
+                prim.GetPath(), f"there are no texture coordinates {name!r}, which the material reads"
+            )
         found = found or primvars.Values(np.zeros((1, 2), np.float32), None, "mesh")
         uvs.append(fit(found))
     if uvs:
