@@ -6,7 +6,11 @@
 
 use std::{collections::BTreeMap, path::Path};
 
-use ajar_integrators::{Settings, Window, features::Features};
+use ajar_integrators::{
+    Metropolis, Settings, Window,
+    features::Features,
+    mlt::{choice::Choice, lens_subpaths::Spread},
+};
 use ajar_output::{Checkpoint, OutputError, read_checkpoint, write_checkpoint};
 use ajar_render::film::Film;
 use ajar_scene::{Camera, Cause, Diagnostic};
@@ -44,6 +48,17 @@ pub struct Subject {
     pub samples_per_round: u32,
     /// Weights of mutations that replace the usual ones.
     pub mutations: BTreeMap<String, f64>,
+    /// How the choice between mutations is weighed.
+    pub mutation_choice: String,
+    /// Steps of a chain.
+    pub chain_length: u32,
+    /// How lens subpaths spread.
+    pub lens_subpaths: String,
+}
+
+/// The one of `all` with that name; the default for a name of another version, which does not fit anyway.
+fn named<T: Copy + Default>(all: &[T], name: fn(T) -> &'static str, wanted: &str) -> T {
+    all.iter().copied().find(|one| name(*one) == wanted).unwrap_or_default()
 }
 
 impl Subject {
@@ -56,7 +71,8 @@ impl Subject {
         settings: &Settings,
     ) -> Self {
         // A new setting changes what rounds deposit: this pattern asks to put it here.
-        let Settings { seed, max_depth, samples_per_round, window, mutations } = settings.clone();
+        let Settings { seed, max_depth, samples_per_round, window, metropolis } = settings.clone();
+        let Metropolis { weights, choice, chain_length, lens_subpaths } = metropolis;
         let Window { x0, y0, x1, y1 } = window;
         Self {
             program: concat!("ajar ", env!("CARGO_PKG_VERSION")).into(),
@@ -69,7 +85,10 @@ impl Subject {
             seed,
             max_depth,
             samples_per_round,
-            mutations,
+            mutations: weights,
+            mutation_choice: choice.name().into(),
+            chain_length,
+            lens_subpaths: lens_subpaths.name().into(),
         }
     }
 
@@ -78,7 +97,13 @@ impl Subject {
         let [x0, x1, y0, y1] = self.pixel_bounds;
         let window = Window { x0, y0, x1, y1 };
         let Self { seed, max_depth, samples_per_round, .. } = *self;
-        Settings { seed, max_depth, samples_per_round, window, mutations: self.mutations.clone() }
+        let metropolis = Metropolis {
+            weights: self.mutations.clone(),
+            choice: named(&Choice::ALL, Choice::name, &self.mutation_choice),
+            chain_length: self.chain_length,
+            lens_subpaths: named(&Spread::ALL, Spread::name, &self.lens_subpaths),
+        };
+        Settings { seed, max_depth, samples_per_round, window, metropolis }
     }
 
     /// What is not as in `wanted`, an error each about the file `this`. The scene is the file's fault,

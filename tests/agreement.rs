@@ -46,7 +46,7 @@ impl Blocks {
     fn new(world: &World, integrator: &dyn Integrator, seed: u64, samples_per_round: u32) -> Self {
         let window = Window { x0: 0, y0: 0, x1: WIDTH, y1: HEIGHT };
         let settings =
-            Settings { seed, max_depth: 10, samples_per_round, window, mutations: Default::default() };
+            Settings { seed, max_depth: 10, samples_per_round, window, metropolis: Default::default() };
         let unit = brightness(world, settings.max_depth);
         let cancel = AtomicBool::new(false);
         let prepared = integrator.prepare(Context { world, settings: &settings, cancel: &cancel });

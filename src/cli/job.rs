@@ -1,12 +1,10 @@
 //! What to render and where to write it: the command line over the scene file over the defaults.
 
-use std::collections::BTreeMap;
-
-use ajar_integrators::{Integrator, Settings, Window, integrators, mlt::mutations, stop::StopRules};
+use ajar_integrators::{Integrator, Settings, Window, integrators, stop::StopRules};
 use ajar_output::ToneMap;
 use ajar_scene::{Cause, Diagnostic, OutputSettings, RenderSettings};
 
-use super::render::Args;
+use super::{metropolis::metropolis, render::Args};
 use crate::{
     checkpoint::Saved,
     image::{Aov, Destination, Form},
@@ -54,8 +52,8 @@ impl Job {
         let rules = if shard.is_whole() { rules } else { share(rules, shard)? };
         let seed = args.seed.or(render.seed).unwrap_or(0);
         let window = window(args, render, size)?;
-        let mutations = mutations(render)?;
-        let settings = Settings { seed, max_depth, samples_per_round, window, mutations };
+        let metropolis = metropolis(render)?;
+        let settings = Settings { seed, max_depth, samples_per_round, window, metropolis };
         let destination = destination(args, output)?;
         args.checkpoints.check(&destination)?;
         Ok(Self { integrator, size, settings, shard, rules, destination })
@@ -76,7 +74,7 @@ impl Job {
     }
 }
 
-fn wrong(message: impl Into<String>) -> Diagnostic {
+pub(super) fn wrong(message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(message).because(Cause::Usage)
 }
 
@@ -86,20 +84,6 @@ fn find_integrator(name: &str) -> Result<&'static dyn Integrator, Diagnostic> {
         wrong(format!("there is no integrator \"{name}\""))
             .hint(format!("choose one of: {}", known.join(", ")))
     })
-}
-
-/// Weights of mutations, their names checked.
-fn mutations(render: &RenderSettings) -> Result<BTreeMap<String, f64>, Diagnostic> {
-    let known: Vec<_> = mutations::names().collect();
-    if let Some(name) = render.mutations.keys().find(|name| !known.contains(&name.as_str())) {
-        return Err(wrong(format!("there is no mutation \"{name}\""))
-            .element("render.mutations")
-            .hint(format!("choose from: {}", known.join(", "))));
-    }
-    if known.iter().all(|name| render.mutations.get(*name) == Some(&0.0)) {
-        return Err(wrong("all mutations are switched off").element("render.mutations"));
-    }
-    Ok(render.mutations.clone())
 }
 
 /// Stop rules given on the command line replace all those of the file. Rounds have as many samples as those that are

@@ -11,6 +11,7 @@ mod inspect;
 mod job;
 mod log;
 mod merge;
+mod metropolis;
 mod progress;
 mod render;
 mod results;

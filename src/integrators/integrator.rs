@@ -7,7 +7,7 @@ use ajar_render::{World, film::RoundFilm};
 
 use crate::{
     bdpt::Bdpt,
-    mlt::{Ajar, Mlt},
+    mlt::{Ajar, Mlt, choice::Choice, lens_subpaths::Spread},
     path::PathTracer,
 };
 
@@ -22,9 +22,36 @@ pub struct Settings {
     pub samples_per_round: u32,
     /// Pixels to render.
     pub window: Window,
-    /// Weights of mutations by name, where they shall not be the usual ones; 0 switches one off.
-    pub mutations: BTreeMap<String, f64>,
+    /// How chains of Metropolis light transport work.
+    pub metropolis: Metropolis,
 }
+
+/// How chains of Metropolis light transport work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Metropolis {
+    /// Weights of mutations by name, where they shall not be the usual ones; 0 switches one off.
+    pub weights: BTreeMap<String, f64>,
+    /// How the choice between mutations is weighed.
+    pub choice: Choice,
+    /// Steps of a chain.
+    pub chain_length: u32,
+    /// How lens subpaths spread.
+    pub lens_subpaths: Spread,
+}
+
+impl Default for Metropolis {
+    fn default() -> Self {
+        Self {
+            weights: BTreeMap::new(),
+            choice: Choice::default(),
+            chain_length: CHAIN_LENGTH,
+            lens_subpaths: Spread::default(),
+        }
+    }
+}
+
+/// Steps of a chain where nothing says another number: fewer waste seeds, more do not pay.
+const CHAIN_LENGTH: u32 = 4096;
 
 impl Settings {
     /// Numbers of the samples that a pixel gets in `round`: rounds go on where the one before ends.

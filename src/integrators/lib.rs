@@ -14,5 +14,5 @@ mod pilot;
 pub mod stats;
 pub mod stop;
 
-pub use integrator::{Context, Integrator, Report, Rounds, Settings, Window, integrators};
+pub use integrator::{Context, Integrator, Metropolis, Report, Rounds, Settings, Window, integrators};
 pub use pilot::brightness;

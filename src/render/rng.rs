@@ -18,8 +18,8 @@ pub enum Purpose {
     Chain = 6,
     /// Light seen directly.
     Direct = 7,
-    /// Strata of Markov chains.
-    Strata = 8,
+    /// Subpaths that are offered to Markov chains.
+    LensSubpath = 8,
     /// Tests.
     Test = 99,
 }

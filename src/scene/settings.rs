@@ -32,6 +32,12 @@ pub struct RenderSettings {
     /// Weights, 0 or more, of mutations of Metropolis light transport, where they shall not be the usual ones. Names are
     /// not checked here.
     pub mutations: BTreeMap<String, f64>,
+    /// Name of the way in which mutations are weighed. Default `fixed`.
+    pub mutation_choice: Option<String>,
+    /// Steps of a chain of Metropolis light transport, at least 1. Default 4096.
+    pub chain_length: Option<u32>,
+    /// Name of the way in which lens subpaths spread over the image. Default `across-chains`.
+    pub lens_subpaths: Option<String>,
 }
 
 /// The table `[output]`. Names of tone maps and AOVs are not checked here: their lists live with the writers.

@@ -14,10 +14,10 @@ use ajar_integrators::mlt::{
     Mutation,
     chain::{Chain, Kernel},
     choice::Table,
+    lens_subpaths::{LensSubpaths, REUSE, Spread},
     mutations::mutations,
     path::{Path, Space},
     seeds::{Bootstrap, resample},
-    strata::Strata,
     target::Plain,
 };
 use ajar_render::rng::{Purpose, Rng};
@@ -49,9 +49,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         writeln!(out, "{name:15} {rate:11.0} {:12.0} {rays:5.2} {accepted:9.2}", 1e9 / rate)
     };
     row("all", &list, &table)?;
-    if std::env::var_os("ALL").is_some() {
-        return Ok(());
-    }
     for mutation in &list {
         row(mutation.name(), &[*mutation], &Table::uniform(&[1.0]))?;
     }
@@ -83,11 +80,10 @@ fn time(kernel: Kernel<'_>, seeds: &[&Path], seconds: f64) -> Speed {
     let mut chain = Chain::new(kernel, Rng::new(1, Purpose::Chain, 0, 0));
     let (limit, mut time) = (Duration::from_secs_f64(seconds), Duration::ZERO);
     for (index, seed) in seeds.iter().cycle().enumerate() {
-        chain.start(
-            seed,
-            Rng::new(1, Purpose::Chain, 0, index as u64),
-            Strata::new(index as u32, 1 << 20, 7),
-        );
+        if index % REUSE == 0 {
+            chain.share(LensSubpaths::new(Spread::AcrossChains, (1, 0), index as u32, 1 << 20));
+        }
+        chain.start(seed, Rng::new(1, Purpose::Chain, 0, index as u64));
         let started = Instant::now();
         chain.run(STEPS, |path, _, share| {
             std::hint::black_box((path.raster, share));

@@ -25,20 +25,65 @@ use crate::{
 /// κ: how many times a pixel's brightness one path may add to it.
 const CLAMP: f64 = 2.0;
 
-/// Which part of each path belongs to whom.
+/// Which part of each path belongs to whom, and who finds seeds for the chains.
 #[derive(Clone, Copy, Debug)]
 pub struct Split<'a> {
     /// Where paths live.
     pub space: Space<'a>,
     /// Brightness of each pixel of the window, nowhere 0.
     pub brightness: &'a [f64],
+    /// Bidirectional samples for each eye path: seeds come from both.
+    pub beside: f64,
 }
+
+/// From how many times its pixel's brightness on a contribution C is heavy: what path tracing seldom finds,
+/// bidirectional samples may find more often.
+const HEAVY: f64 = 8.0;
 
 impl Split<'_> {
     /// w_R: the share that belongs to the chains.
     pub fn residual(contribution: f64, brightness: f64) -> f64 {
         if contribution.is_infinite() { 1.0 } else { contribution / (CLAMP * brightness + contribution) }
     }
+
+    /// Whether bidirectional samples look for paths of this contribution too.
+    fn is_heavy(&self, contribution: f64, brightness: f64) -> bool {
+        self.beside > 0.0 && contribution > HEAVY * brightness
+    }
+
+    /// What a bidirectional sample of `x`, weighed by f*/p, is worth as a seed.
+    pub fn seed_beside(&self, x: &Path) -> f64 {
+        let brightness = self.space.pixel(x.raster).map_or(1.0, |pixel| self.brightness[pixel]);
+        let contribution = contribution(x);
+        let share = 1.0 - self.seeds_of_base(x, contribution, brightness);
+        share * Self::residual(contribution, brightness) / brightness
+    }
+
+    /// The part of the seeds at `x` that is left to path tracing, by the balance heuristic; the rest is left to
+    /// bidirectional samples.
+    fn seeds_of_base(&self, x: &Path, contribution: f64, brightness: f64) -> f64 {
+        if !self.is_heavy(contribution, brightness) {
+            return 1.0;
+        }
+        let (base, beside) = (x.scalar() / contribution, self.beside * bidirectional_density(x));
+        base / (base + beside)
+    }
+}
+
+/// Total density of the techniques of bidirectional path tracing, their Russian roulette included.
+fn bidirectional_density(x: &Path) -> f64 {
+    let k = x.edges();
+    let survival = |i: usize, edges: usize| {
+        if edges < ROULETTE_DEPTH || i == 0 || i == k { 1.0 } else { x.nodes[i].albedo.clamp(0.05, 0.95) }
+    };
+    // Technique s: the walk from the light survives at x_1 … x_{s-2}, that from the eye at x_{s+1} … x_{k-1}.
+    let mut sum = 0.0;
+    x.splits(0, k + 1, |s, density| {
+        let light: f64 = (1..s.saturating_sub(1)).map(|i| survival(i, i)).product();
+        let eye: f64 = (s + 1..k).map(|i| survival(i, k - i)).product();
+        sum += density * light * eye;
+    });
+    sum
 }
 
 impl Target for Split<'_> {
@@ -79,8 +124,8 @@ pub fn contribution(x: &Path) -> f64 {
     x.scalar() / both
 }
 
-/// Adds the base of a round to the film. Returns what each pixel leaves to the chains: the sum over its samples of
-/// C·w_R/μ.
+/// Adds the base of a round to the film. Returns what each pixel leaves to the chains as their seeds: the sum over its
+/// samples of C·w_R/μ, of heavy paths the part that bidirectional samples do not look for.
 pub fn render(
     split: &Split<'_>,
     settings: &Settings,
@@ -92,13 +137,18 @@ pub fn render(
     (0..window.pixels())
         .into_par_iter()
         .with_min_len(window.width() as usize)
-        .map(|pixel| {
-            let mut shares = Shares { brightness: split.brightness[pixel], sum: Rgb::ZERO, residual: 0.0 };
+        .map_init(Path::with_capacity, |path, pixel| {
+            let mut shares = Shares::new(split, pixel);
             for sample in settings.samples(round) {
                 trace(&split.space, settings.seed, pixel, sample, &mut shares);
+                if std::mem::take(&mut shares.heavy) {
+                    let mut heavy = Seeds::new(split, pixel, path);
+                    trace(&split.space, settings.seed, pixel, sample, &mut heavy);
+                    shares.left += heavy.left_of_heavy;
+                }
             }
             add(pixel, shares.sum * samples);
-            shares.residual
+            shares.left
         })
         .collect()
 }
@@ -158,27 +208,39 @@ pub fn vertices(space: &Space<'_>, seed: u64, pixel: usize) -> usize {
 }
 
 /// Divides what a pixel's samples find.
-struct Shares {
+struct Shares<'a> {
+    split: &'a Split<'a>,
     brightness: f64,
+    /// What belongs to the base.
     sum: Rgb,
-    residual: f64,
+    /// What is left to the chains, but for heavy paths.
+    left: f64,
+    /// Whether there were heavy paths.
+    heavy: bool,
 }
 
-impl Shares {
-    /// What a path leaves to the chains: C·w_R/μ. Light seen directly is the base's alone.
-    fn left(&self, path: &Found<'_>) -> f64 {
-        let c = scalar(path.value);
-        if path.edges == 1 { 0.0 } else { c * Split::residual(c, self.brightness) / self.brightness }
+impl<'a> Shares<'a> {
+    fn new(split: &'a Split<'a>, pixel: usize) -> Self {
+        Self { split, brightness: split.brightness[pixel], sum: Rgb::ZERO, left: 0.0, heavy: false }
     }
 }
 
-impl Visitor for Shares {
+/// What a path leaves to the chains: C·w_R/μ. Light seen directly is the base's alone.
+fn left(path: &Found<'_>, brightness: f64) -> f64 {
+    let c = scalar(path.value);
+    if path.edges == 1 { 0.0 } else { c * Split::residual(c, brightness) / brightness }
+}
+
+impl Visitor for Shares<'_> {
     fn found(&mut self, path: &Found<'_>) {
-        let left = self.left(path);
+        let (left, c) = (left(path, self.brightness), scalar(path.value));
         // w_R = left·μ/C, so that what stays is (C − left·μ)/C of the value.
-        let c = scalar(path.value);
         self.sum += path.value * (1.0 - left * self.brightness / c);
-        self.residual += left;
+        if left > 0.0 && self.split.is_heavy(c, self.brightness) {
+            self.heavy = true;
+        } else {
+            self.left += left;
+        }
     }
 }
 
@@ -191,45 +253,67 @@ pub fn replay(
     (pixel, rest): (usize, f64),
     path: &mut Path,
 ) -> Option<()> {
-    let shares = Shares { brightness: split.brightness[pixel], sum: Rgb::ZERO, residual: 0.0 };
-    let mut search = Search { shares, rest, walked: Vec::new(), path, connection: None, found: false };
+    let mut seeds = Seeds { rest, ..Seeds::new(split, pixel, path) };
     for sample in settings.samples(round) {
-        search.walked.clear();
-        let (raster, lens) = trace(&split.space, settings.seed, pixel, sample, &mut search);
-        if search.found {
-            (search.path.raster, search.path.lens) = (raster, lens);
-            let edges = search.path.edges();
-            return search.path.measure(&split.space, (0, edges), search.connection).ok();
+        seeds.walked.clear();
+        let (raster, lens) = trace(&split.space, settings.seed, pixel, sample, &mut seeds);
+        if seeds.found {
+            (seeds.path.raster, seeds.path.lens) = (raster, lens);
+            return Some(());
         }
     }
     None
 }
 
-struct Search<'a> {
-    shares: Shares,
-    rest: f64,
+/// Builds the paths that chains may start from.
+struct Seeds<'a> {
+    split: &'a Split<'a>,
+    brightness: f64,
     walked: Vec<Vertex>,
     path: &'a mut Path,
-    connection: Option<usize>,
+    /// What heavy paths leave to the chains.
+    left_of_heavy: f64,
+    /// How much is to be passed over until the path that is asked for.
+    rest: f64,
+    /// Whether it was found.
     found: bool,
 }
 
-impl Visitor for Search<'_> {
+impl<'a> Seeds<'a> {
+    fn new(split: &'a Split<'a>, pixel: usize, path: &'a mut Path) -> Self {
+        let (brightness, rest) = (split.brightness[pixel], f64::INFINITY);
+        Self { split, brightness, walked: Vec::new(), path, left_of_heavy: 0.0, rest, found: false }
+    }
+
+    fn build(&mut self, path: &Found<'_>) -> Option<()> {
+        let ends = std::iter::once(path.x0).chain(path.seen_from);
+        self.path.nodes.clear();
+        self.path.nodes.extend(ends.chain(self.walked.iter().rev()).map(|vertex| Node::new(*vertex)));
+        let (edges, connection) = (self.path.edges(), path.seen_from.map(|_| 0));
+        self.path.measure(&self.split.space, (0, edges), connection).ok()
+    }
+}
+
+impl Visitor for Seeds<'_> {
     fn leave(&mut self, vertex: &Vertex) {
         self.walked.push(*vertex);
     }
 
     fn found(&mut self, path: &Found<'_>) {
-        if self.found {
+        let (mut left, c) = (left(path, self.brightness), scalar(path.value));
+        let is_heavy = self.split.is_heavy(c, self.brightness);
+        if self.found || left == 0.0 || !(is_heavy || self.rest.is_finite()) {
             return;
         }
-        self.shares.found(path);
-        if self.shares.residual > self.rest {
-            self.found = true;
-            self.connection = path.seen_from.map(|_| 0);
-            let ends = std::iter::once(path.x0).chain(path.seen_from);
-            self.path.nodes.clear();
-            self.path.nodes.extend(ends.chain(self.walked.iter().rev()).map(|vertex| Node::new(*vertex)));
+        if is_heavy {
+            left *=
+                self.build(path).map_or(1.0, |()| self.split.seeds_of_base(self.path, c, self.brightness));
+            self.left_of_heavy += left;
+        }
+        self.rest -= left;
+        if self.rest < 0.0 {
+            self.found = self.build(path).is_some();
+            self.rest = f64::NEG_INFINITY;
         }
     }
 }

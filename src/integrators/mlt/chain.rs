@@ -4,11 +4,11 @@ use ajar_render::{math::Rgb, rng::Rng};
 
 use super::{
     Aux, Mutation, Reject,
-    choice::{Selection, Table},
+    choice::{Learner, Selection, Table},
+    lens_subpaths::LensSubpaths,
     path::{Path, Space},
     proposal::Proposal,
     stats::ChainStats,
-    strata::Strata,
     target::{Aim, Target},
 };
 
@@ -37,6 +37,8 @@ pub struct Chain<'a> {
     pending: f64,
     /// What happened.
     pub stats: ChainStats,
+    /// Learns which mutations serve which paths, if asked to.
+    pub learner: Option<Box<Learner>>,
 }
 
 impl<'a> Chain<'a> {
@@ -51,12 +53,19 @@ impl<'a> Chain<'a> {
             y: Proposal::default(),
             pending: 0.0,
             stats: ChainStats::default(),
+            learner: None,
         }
     }
 
-    /// Begins again at `seed`, whose f* is not 0, with the random numbers of `rng` and the chain's place among others.
-    pub fn start(&mut self, seed: &Path, rng: Rng, strata: Strata) {
-        (self.rng, self.y.strata) = (rng, strata);
+    /// What the chains that follow are offered.
+    pub fn share(&mut self, subpaths: LensSubpaths) {
+        self.y.lens_subpaths = subpaths;
+    }
+
+    /// Begins again at `seed`, whose f* is not 0, with the random numbers of `rng`.
+    pub fn start(&mut self, seed: &Path, rng: Rng) {
+        self.rng = rng;
+        self.y.lens_subpaths.next_chain();
         self.x.copy_from(seed);
         self.y.follow(seed);
         self.aim = self.kernel.target.aim(seed);
@@ -90,15 +99,35 @@ impl<'a> Chain<'a> {
             self.pending += 1.0;
             return;
         };
-        let mutation = self.kernel.mutations[m];
-        let aux = match mutation.propose(&self.kernel.space, &self.x, &mut self.y, &mut self.rng) {
-            Ok(aux) => aux,
+        let rays = self.y.rays;
+        match self.propose(m) {
             Err(reject) => {
                 self.stats.fail(m, reject);
                 self.pending += 1.0;
-                return;
+                self.learn(m, rays, 0.0);
             }
-        };
+            Ok(Proposed { aim, selection, acceptance }) => {
+                self.learn(m, rays, acceptance);
+                let accepted = self.rng.f64() < acceptance;
+                self.stats.count(m, acceptance, accepted);
+                if accepted {
+                    record(&self.x, &self.aim, self.pending + 1.0 - acceptance);
+                    self.y.accept(&mut self.x);
+                    (self.aim, self.selection, self.pending) = (aim, selection, acceptance);
+                } else {
+                    if acceptance > 0.0 {
+                        record(&self.y.path, &aim, acceptance);
+                    }
+                    self.pending += 1.0 - acceptance;
+                }
+            }
+        }
+    }
+
+    /// Proposes a path into `y` by mutation number `m`.
+    fn propose(&mut self, m: usize) -> Result<Proposed, Reject> {
+        let mutation = self.kernel.mutations[m];
+        let aux = mutation.propose(&self.kernel.space, &self.x, &mut self.y, &mut self.rng)?;
         let aim = self.kernel.target.aim(&self.y.path);
         let same_kind = self.y.path.signature == self.x.signature;
         let selection = if same_kind { self.selection } else { self.selection_at(&self.y.path) };
@@ -106,24 +135,25 @@ impl<'a> Chain<'a> {
         let y = State { path: &self.y.path, aim: &aim, selection: &selection };
         let ratio = ratio(&self.kernel, &x, &y, m, &aux);
         if ratio.is_nan() {
-            self.stats.fail(m, Reject::NotFinite);
-            self.pending += 1.0;
-            return;
-        }
-        let acceptance = ratio.min(1.0);
-        let accepted = self.rng.f64() < acceptance;
-        self.stats.count(m, acceptance, accepted);
-        if accepted {
-            record(&self.x, &self.aim, self.pending + 1.0 - acceptance);
-            self.y.accept(&mut self.x);
-            (self.aim, self.selection, self.pending) = (aim, selection, acceptance);
+            Err(Reject::NotFinite)
         } else {
-            if acceptance > 0.0 {
-                record(&self.y.path, &aim, acceptance);
-            }
-            self.pending += 1.0 - acceptance;
+            Ok(Proposed { aim, selection, acceptance: ratio.min(1.0) })
         }
     }
+
+    fn learn(&mut self, m: usize, rays_before: u64, acceptance: f64) {
+        if let Some(learner) = &mut self.learner {
+            let moved = if acceptance > 0.0 { (self.y.path.raster - self.x.raster).length() } else { 0.0 };
+            learner.note(&self.x.signature, m, self.y.rays - rays_before, (acceptance, moved));
+        }
+    }
+}
+
+/// A path that may be accepted.
+struct Proposed {
+    aim: Aim,
+    selection: Selection,
+    acceptance: f64,
 }
 
 /// A state of a chain: a path, what it aims at, and the chances of the mutations there.

@@ -5,15 +5,14 @@ use rayon::prelude::*;
 
 use super::{
     chain::{Chain, Kernel},
+    choice::Learner,
+    lens_subpaths::{LensSubpaths, REUSE, Spread},
     path::Path,
+    seeds::Pool,
     stats::ChainStats,
-    strata::Strata,
     target::Aim,
 };
 use crate::{Context, Report, bdpt::Tracer};
-
-/// Steps of a chain.
-pub const STEPS: u32 = 4096;
 
 /// Chains that share a kernel and a round. Each is a function of seed, round and its index.
 #[derive(Clone, Copy)]
@@ -24,11 +23,19 @@ pub struct Chains<'a> {
     pub kernel: Kernel<'a>,
     /// The round; pilots have numbers of their own.
     pub round: u32,
+    /// Whether to learn which mutations serve which paths.
+    pub learning: bool,
+}
+
+/// What one group of chains did: counts of each that had a seed.
+struct Group {
+    stats: Vec<Option<ChainStats>>,
+    learner: Option<Box<Learner>>,
 }
 
 impl<'a> Chains<'a> {
-    /// Runs `count` chains of [`STEPS`] steps. `find_seed` builds the first path of each; `record` takes paths, what they
-    /// aim at and the steps that they stand for.
+    /// Runs `count` chains. `find_seed` builds the first path of each; `record` takes paths, what they aim at and the steps
+    /// that they stand for.
     pub fn run(
         &self,
         count: usize,
@@ -37,35 +44,57 @@ impl<'a> Chains<'a> {
     ) -> Totals {
         let space = &self.kernel.space;
         let tracer = || Tracer::new(space.world, space.max_depth, 1.0 / space.film_ratio);
-        let seed = self.cx.settings.seed;
+        let (seed, metropolis) = (self.cx.settings.seed, &self.cx.settings.metropolis);
         let stream = |index: usize| Rng::new(seed, Purpose::Chain, self.round, index as u64);
-        let stats: Vec<Option<ChainStats>> = (0..count)
+        // Chains of a group are far apart in the order of seeds; those of a list share nothing.
+        let size = if metropolis.lens_subpaths == Spread::List { 1 } else { REUSE };
+        let groups = count.div_ceil(size);
+        let found: Vec<Group> = (0..groups)
             .into_par_iter()
             .with_max_len(1)
             .map_init(
                 || (tracer(), Path::with_capacity(), Chain::new(self.kernel, stream(0))),
-                |(tracer, path, chain), index| {
-                    if self.cx.cancelled() {
-                        return None;
-                    }
-                    find_seed(index, tracer, path)?;
-                    let key = Rng::new(seed, Purpose::Strata, self.round, 0).next_u32();
-                    chain.start(path, stream(index), Strata::new(index as u32, count as u32, key.into()));
-                    chain.run(STEPS, &record);
-                    Some(std::mem::take(&mut chain.stats))
+                |(tracer, path, chain), group| {
+                    let keys = (seed, self.round);
+                    chain.share(LensSubpaths::new(
+                        metropolis.lens_subpaths,
+                        keys,
+                        group as u32,
+                        groups as u32,
+                    ));
+                    chain.learner = self.learning.then(Box::default);
+                    let run = |index: usize| {
+                        if self.cx.cancelled() {
+                            return None;
+                        }
+                        find_seed(index, tracer, path)?;
+                        chain.start(path, stream(index));
+                        chain.run(metropolis.chain_length, &record);
+                        Some(std::mem::take(&mut chain.stats))
+                    };
+                    let stats = (group..count).step_by(groups).map(run).collect();
+                    Group { stats, learner: chain.learner.take() }
                 },
             )
             .collect();
         let mut totals = Totals { chains: count as u64, ..Totals::default() };
-        for stats in &stats {
-            match stats {
-                Some(stats) => totals.add_chain(stats),
-                None => totals.lost_seeds += 1,
+        for Group { stats, learner } in found {
+            for stats in stats {
+                match stats {
+                    Some(stats) => totals.add_chain(&stats, metropolis.chain_length),
+                    None => totals.lost_seeds += 1,
+                }
+            }
+            if let Some(learner) = learner {
+                totals.learned.get_or_insert_default().add(&learner);
             }
         }
         totals
     }
 }
+
+/// Share of the heaviest thousandth of candidates that is worth a remark.
+const UNEVEN: f64 = 0.3;
 
 /// What chains did.
 #[derive(Clone, Debug, Default)]
@@ -80,11 +109,15 @@ pub struct Totals {
     pub stuck: u64,
     /// Rounds in which nothing was found to begin with.
     pub empty_rounds: u64,
+    /// What they began from, where bidirectional samples found it.
+    pub pool: Pool,
+    /// What chains learned, if they were asked to.
+    pub learned: Option<Box<Learner>>,
 }
 
 impl Totals {
-    fn add_chain(&mut self, stats: &ChainStats) {
-        self.stuck += u64::from(stats.longest_wait > STEPS / 2);
+    fn add_chain(&mut self, stats: &ChainStats, length: u32) {
+        self.stuck += u64::from(stats.longest_wait > length / 2);
         self.stats.add(stats);
     }
 
@@ -95,6 +128,7 @@ impl Totals {
         self.lost_seeds += other.lost_seeds;
         self.stuck += other.stuck;
         self.empty_rounds += other.empty_rounds;
+        self.pool.add(&other.pool);
     }
 
     /// Rays that a mutation casts on average.
@@ -120,11 +154,25 @@ impl Totals {
             ("stuck_chains", self.stuck as f64),
             ("lost_seeds", self.lost_seeds as f64),
             ("mutations_not_finite", not_finite as f64),
+            ("seed_candidates", self.pool.size as f64),
+            ("heaviest_thousandth_of_candidates", self.pool.heavy_share()),
+            ("empty_rounds", self.empty_rounds as f64),
         ] {
             report.numbers.push((name.into(), number));
         }
         if !shown.is_empty() {
             report.lines.push(format!("accepted: {}", shown.join(", ")));
+        }
+        if self.stuck > 0 {
+            report
+                .lines
+                .push(format!("{} of {} chains were stuck for half their length", self.stuck, self.chains));
+        }
+        if self.pool.heavy_share() > UNEVEN {
+            report.lines.push(format!(
+                "a thousandth of the paths that chains start from carry {:.0} % of the light: rounds differ much",
+                100.0 * self.pool.heavy_share()
+            ));
         }
         if self.empty_rounds > 0 {
             report.warnings.push(format!(

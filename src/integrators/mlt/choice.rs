@@ -46,11 +46,113 @@ pub struct Table {
 }
 
 impl Table {
+    /// The same weight for all mutations that have one.
+    pub fn equal(&self) -> Self {
+        Self { weights: self.weights.map(|row| row.map(|w| f64::from(u8::from(w > 0.0)))) }
+    }
+
     /// The same weights for all classes.
     pub fn uniform(weights: &[f64]) -> Self {
         let mut row = [0.0; MAX_MUTATIONS];
         row[..weights.len()].copy_from_slice(weights);
         Self { weights: [row; CLASSES] }
+    }
+}
+
+/// How a table is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// Weights that suit most scenes.
+    #[default]
+    Fixed,
+    /// Weights by what a pilot saw mutations do to paths of each class.
+    Learned,
+    /// All mutations that apply are equally likely.
+    Equal,
+}
+
+impl Choice {
+    /// Its name in settings.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Learned => "learned",
+            Self::Equal => "equal",
+        }
+    }
+
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Fixed, Self::Learned, Self::Equal];
+}
+
+/// What a mutation did to paths of a class.
+#[derive(Clone, Copy, Debug, Default)]
+struct Lesson {
+    tried: f64,
+    /// Sum of acceptance probabilities times how useful the change was, in [0, 1].
+    worth: f64,
+    rays: f64,
+}
+
+/// Watches mutations at work.
+#[derive(Clone, Debug)]
+pub struct Learner {
+    lessons: [[Lesson; MAX_MUTATIONS]; CLASSES],
+}
+
+/// Raster distance that changes what a chain sees as much as any, pixels.
+const FAR: f64 = 8.0;
+/// Use of a change that leaves the raster position as it is.
+const LOCAL_USE: f64 = 0.25;
+/// Bookkeeping of a mutation, in rays.
+const OVERHEAD: f64 = 1.5;
+/// Tries from which a lesson counts.
+const LEAST_TRIES: f64 = 200.0;
+/// Least share of a mutation that was ever useful.
+const LEAST_SHARE: f64 = 0.02;
+
+impl Default for Learner {
+    fn default() -> Self {
+        Self { lessons: [[Lesson::default(); MAX_MUTATIONS]; CLASSES] }
+    }
+}
+
+impl Learner {
+    /// Mutation number `m` cast `rays` rays for a proposal from `x` that is accepted with some probability and moves the
+    /// raster position by some pixels.
+    pub fn note(&mut self, x: &Signature, m: usize, rays: u64, (acceptance, moved): (f64, f64)) {
+        let lesson = &mut self.lessons[class(x)][m];
+        lesson.tried += 1.0;
+        lesson.worth += acceptance * (moved / FAR).clamp(LOCAL_USE, 1.0);
+        lesson.rays += rays as f64;
+    }
+
+    /// Adds what another learned.
+    pub fn add(&mut self, other: &Self) {
+        for (sum, more) in self.lessons.iter_mut().flatten().zip(other.lessons.iter().flatten()) {
+            sum.tried += more.tried;
+            sum.worth += more.worth;
+            sum.rays += more.rays;
+        }
+    }
+
+    /// Weights in proportion to use over cost. Classes that too little is known of keep those of `usual`, and what has
+    /// no weight there gets none.
+    pub fn table(&self, usual: &Table) -> Table {
+        let mut table = usual.clone();
+        for (row, lessons) in table.weights.iter_mut().zip(&self.lessons) {
+            let worth =
+                lessons.map(|l| if l.tried > 0.0 { l.worth / (l.rays + OVERHEAD * l.tried) } else { 0.0 });
+            let known =
+                row.iter().zip(lessons).all(|(w, l)| *w == 0.0 || l.tried == 0.0 || l.tried >= LEAST_TRIES);
+            let total: f64 = row.iter().zip(&worth).filter(|(w, _)| **w > 0.0).map(|(_, worth)| worth).sum();
+            if known && total > 0.0 {
+                for (weight, worth) in row.iter_mut().zip(worth).filter(|(w, _)| **w > 0.0) {
+                    *weight = if worth > 0.0 { (worth / total).max(LEAST_SHARE) } else { LEAST_SHARE };
+                }
+            }
+        }
+        table
     }
 }
 

@@ -4,7 +4,6 @@ use std::sync::{Mutex, PoisonError};
 
 use ajar_render::{
     film::RoundFilm,
-    path::Kind,
     rng::{Purpose, Rng},
 };
 
@@ -12,11 +11,11 @@ use super::{
     Mutation,
     base::{self, Split},
     chain::Kernel,
-    chains::{Chains, STEPS, Totals},
+    chains::{Chains, Totals},
     choice::Table,
-    mutations::mutations,
     path::Space,
     pilot::{Plan, plan},
+    plain::PlainChains,
     seeds::{Bootstrap, Candidate},
 };
 use crate::{Context, Integrator, Report, Rounds, bdpt::MAX_VERTICES, path::PathTracer};
@@ -46,12 +45,12 @@ impl Integrator for Ajar {
     }
 
     fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a> {
-        let plan = plan(cx, self.always);
+        let chains = PlainChains::new(cx);
+        let plan = plan(&chains, self.always);
         if plan.mutations_per_sample == 0.0 {
             return PathTracer.prepare(cx);
         }
-        let space = Space::new(cx.world, cx.settings.window, cx.settings.max_depth);
-        let (mutations, table) = mutations(&cx.settings.mutations);
+        let (space, mutations, table) = (chains.space, chains.mutations, chains.table);
         Box::new(AjarRounds { cx, space, plan, mutations, table, totals: Mutex::default() })
     }
 }
@@ -70,12 +69,9 @@ struct AjarRounds<'a> {
 enum Seed {
     /// A pixel of the base, and how far through what it left.
     Base(usize, f64),
-    /// A bidirectional sample that path tracing cannot make.
+    /// A bidirectional sample of what path tracing seldom finds.
     Bidirectional(Candidate),
 }
-
-/// Bidirectional samples a pixel and round, where there are lights that only they find behind mirrors and lenses.
-const SAMPLES_BESIDE: u32 = 1;
 
 impl Rounds for AjarRounds<'_> {
     fn scale(&self) -> f64 {
@@ -84,30 +80,31 @@ impl Rounds for AjarRounds<'_> {
 
     fn render(&self, round: u32, film: &RoundFilm) {
         let (settings, pixels) = (self.cx.settings, self.space.window.pixels());
-        let split = Split { space: self.space, brightness: &self.plan.brightness };
-        let samples = settings.samples_per_round;
-        let left = base::render(&split, settings, round, |pixel, value| film.add(pixel, value));
-        let bootstrap = Bootstrap {
+        let samples = f64::from(settings.samples_per_round) * pixels as f64;
+        let beside = (self.plan.beside * samples).ceil() as u32;
+        let split = Split {
             space: self.space,
-            seed: settings.seed,
-            round,
-            samples: SAMPLES_BESIDE * pixels as u32,
+            brightness: &self.plan.brightness,
+            beside: f64::from(beside) / samples,
         };
-        let beside = self.beside(&bootstrap);
-        let base_total = left.iter().sum::<f64>() / (f64::from(samples) * pixels as f64);
-        let total = base_total + beside.iter().map(|c| c.weight).sum::<f64>();
-        let mutations = self.plan.mutations_per_sample * f64::from(samples) * pixels as f64;
-        let count = (mutations / f64::from(STEPS)).ceil() as usize;
+        let left = base::render(&split, settings, round, |pixel, value| film.add(pixel, value));
+        let bootstrap = Bootstrap { space: self.space, seed: settings.seed, round, samples: beside };
+        let found = bootstrap.candidates_worth(|x| split.seed_beside(x));
+        let total = left.iter().sum::<f64>() / samples
+            + found.iter().map(|c| c.weight).sum::<f64>() / f64::from(beside);
+        let mutations = self.plan.mutations_per_sample * samples;
+        let length = f64::from(settings.metropolis.chain_length);
+        let count = (mutations / length).ceil() as usize;
         if total <= 0.0 || self.cx.cancelled() {
             return;
         }
-        let scale = 1.0 / (f64::from(samples) * pixels as f64);
         let u = Rng::new(settings.seed, Purpose::Resampling, round, 0).f64();
-        let seeds = spread(&left, scale, &beside, total / count as f64, u);
-        let step = total * pixels as f64 / (seeds.len() as f64 * f64::from(STEPS));
+        let step = total / count as f64;
+        let seeds = spread((&left, 1.0 / samples), (&found, 1.0 / f64::from(beside)), step, u);
+        let step = total * pixels as f64 / (seeds.len() as f64 * length);
         let (mutations, table) = (self.mutations.as_slice(), &self.table);
         let kernel = Kernel { space: self.space, mutations, table, target: &split };
-        let totals = Chains { cx: self.cx, kernel, round }.run(
+        let totals = Chains { cx: self.cx, kernel, round, learning: false }.run(
             seeds.len(),
             |index, tracer, path| match seeds[index] {
                 Seed::Base(pixel, rest) => base::replay(&split, settings, round, (pixel, rest), path),
@@ -131,38 +128,24 @@ impl Rounds for AjarRounds<'_> {
     }
 }
 
-impl AjarRounds<'_> {
-    /// Candidates that path tracing never finds, lights without extent behind Dirac events, their weights those of the
-    /// target and a sample.
-    fn beside(&self, bootstrap: &Bootstrap<'_>) -> Vec<Candidate> {
-        if !self.cx.world.lights.has_dirac() {
-            return Vec::new();
-        }
-        let unseen = |x0: Kind, x1_connectable: bool| {
-            matches!(x0, Kind::PointLight | Kind::DirectionalLight) && !x1_connectable
-        };
-        let mut found = bootstrap.candidates_where(unseen);
-        for candidate in &mut found {
-            let brightness = self.plan.brightness[candidate.pixel as usize];
-            candidate.weight /= brightness * f64::from(bootstrap.samples);
-        }
-        found
-    }
-}
-
-/// Seeds at even steps through what the pixels of the base left, `scale` each, and the candidates beside.
-fn spread(left: &[f64], scale: f64, beside: &[Candidate], step: f64, u: f64) -> Vec<Seed> {
+/// Seeds at even steps through what the pixels of the base left and what bidirectional samples found, each with a scale.
+fn spread(
+    (left, left_scale): (&[f64], f64),
+    (found, found_scale): (&[Candidate], f64),
+    step: f64,
+    u: f64,
+) -> Vec<Seed> {
     let mut seeds = Vec::new();
     let (mut sum, mut next) = (0.0, u * step);
-    for (pixel, &left) in left.iter().enumerate() {
-        while next < sum + left * scale {
-            seeds.push(Seed::Base(pixel, (next - sum) / scale));
+    for (pixel, left) in left.iter().map(|left| left * left_scale).enumerate() {
+        while next < sum + left {
+            seeds.push(Seed::Base(pixel, (next - sum) / left_scale));
             next += step;
         }
-        sum += left * scale;
+        sum += left;
     }
-    for candidate in beside {
-        sum += candidate.weight;
+    for candidate in found {
+        sum += candidate.weight * found_scale;
         while next < sum {
             seeds.push(Seed::Bidirectional(*candidate));
             next += step;

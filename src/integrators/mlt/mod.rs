@@ -6,7 +6,8 @@ pub mod chains;
 pub mod choice;
 mod direct;
 mod estimator;
-mod manifold;
+pub mod lens_subpaths;
+pub mod manifold;
 pub mod mutation;
 pub mod mutations;
 pub mod path;
@@ -16,7 +17,6 @@ pub mod plain;
 pub mod proposal;
 pub mod seeds;
 pub mod stats;
-pub mod strata;
 pub mod target;
 
 pub use estimator::Ajar;

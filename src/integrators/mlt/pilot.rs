@@ -10,7 +10,7 @@ use super::{
     path::Space,
     plain::PlainChains,
 };
-use crate::{Context, Settings};
+use crate::Settings;
 
 /// Mutations a pixel that find the brightness, and then what they would cost and gain.
 const BRIGHTNESS_MUTATIONS: u64 = 12;
@@ -36,6 +36,11 @@ const OVERHEAD: f64 = 1.5;
 /// Shares of the work that the base may get beside chains.
 const BASE_SHARE: [f64; 2] = [0.3, 0.7];
 
+/// Share of the work that looks for seeds besides the base.
+const SEED_WORK: f64 = 0.1;
+/// What a bidirectional sample, its paths measured, costs in eye paths.
+const BIDIRECTIONAL_COST: f64 = 8.0;
+
 /// What the pilot found.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -43,19 +48,21 @@ pub struct Plan {
     pub brightness: Vec<f64>,
     /// Mutations for each eye path; 0 where the base is better alone.
     pub mutations_per_sample: f64,
+    /// Bidirectional samples for each eye path, which look for seeds too.
+    pub beside: f64,
     /// Share of the image that chains would render, in units of each pixel's brightness.
     pub residual: f64,
 }
 
 /// Makes the plan; `always` asks for chains even where they do not pay.
-pub fn plan(cx: Context<'_>, always: bool) -> Plan {
-    let chains = PlainChains::new(cx);
-    let brightness = brightness(&chains);
-    let split = Split { space: chains.space, brightness: &brightness };
-    let gain = gain(&chains, &split);
+pub fn plan(chains: &PlainChains<'_>, always: bool) -> Plan {
+    let brightness = brightness(chains);
+    let split = Split { space: chains.space, brightness: &brightness, beside: 0.0 };
+    let gain = gain(chains, &split);
     let useful = gain.filter(|gain| always || !gain.is_path_better());
     let mutations_per_sample = useful.map_or(0.0, |gain| gain.mutations_per_sample());
-    Plan { mutations_per_sample, residual: gain.map_or(0.0, |gain| gain.residual), brightness }
+    let beside = useful.map_or(0.0, |gain| gain.beside(mutations_per_sample));
+    Plan { mutations_per_sample, beside, residual: gain.map_or(0.0, |gain| gain.residual), brightness }
 }
 
 fn brightness(chains: &PlainChains<'_>) -> Vec<f64> {
@@ -128,6 +135,12 @@ struct Gain {
 }
 
 impl Gain {
+    /// Bidirectional samples for each eye path that take the share [`SEED_WORK`] of the work.
+    fn beside(&self, mutations_per_sample: f64) -> f64 {
+        let work = self.path_cost + mutations_per_sample * self.mutation_cost;
+        SEED_WORK * work / (BIDIRECTIONAL_COST * self.path_cost)
+    }
+
     /// Whether path tracing alone has the smaller error.
     fn is_path_better(&self) -> bool {
         let (base, chains) = self.work();

@@ -10,20 +10,25 @@ use ajar_render::{
 use super::{
     Mutation,
     chain::Kernel,
-    chains::{Chains, STEPS, Totals},
-    choice::Table,
+    chains::{Chains, Totals},
+    choice::{Choice, Table},
     direct,
     mutations::mutations,
     path::{Path, Space},
-    seeds::{Bootstrap, resample},
+    seeds::{Bootstrap, Pool, resample},
     target::{Aim, Plain},
 };
 use crate::{Context, Integrator, Report, Rounds, bdpt::MAX_VERTICES};
 
 /// Mutations for each bidirectional sample of the bootstrap, which costs some ten times as much as one.
 const MUTATIONS_PER_SAMPLE: u64 = 64;
-/// Fewest samples of a bootstrap.
-const LEAST_SAMPLES: u64 = 4096;
+/// Fewest samples of a bootstrap, and most that are tried to find light at all.
+const LEAST_SAMPLES: u32 = 1 << 12;
+const MOST_SAMPLES: u32 = 1 << 20;
+/// Paths that a bootstrap should find.
+const FEW_CANDIDATES: usize = 256;
+/// Round number of the pilot that learns.
+const LEARNING_ROUND: u32 = u32::MAX - 3;
 
 /// Metropolis light transport.
 #[derive(Clone, Copy, Debug)]
@@ -55,38 +60,80 @@ pub struct PlainChains<'a> {
     pub space: Space<'a>,
     /// What they do, and how often.
     pub mutations: Vec<&'static dyn Mutation>,
-    table: Table,
+    /// How often.
+    pub table: Table,
+    /// Fewest bidirectional samples of a round.
+    least_samples: u32,
 }
 
 impl<'a> PlainChains<'a> {
-    /// All mutations with their default weights.
+    /// All mutations with the weights that the settings ask for.
     pub fn new(cx: Context<'a>) -> Self {
         let space = Space::new(cx.world, cx.settings.window, cx.settings.max_depth);
-        let (mutations, table) = mutations(&cx.settings.mutations);
-        Self { cx, space, mutations, table }
+        let (mutations, usual) = mutations(&cx.settings.metropolis.weights);
+        let choice = cx.settings.metropolis.choice;
+        let table = if choice == Choice::Fixed { usual.clone() } else { usual.equal() };
+        let mut chains = Self { cx, space, mutations, table, least_samples: LEAST_SAMPLES };
+        chains.least_samples = chains.samples_that_find();
+        if choice == Choice::Learned {
+            let count = (space.window.pixels() as u64).clamp(1 << 17, 1 << 21);
+            let learned = chains.render_learning(LEARNING_ROUND, count, true, |_, _, _| ()).learned;
+            chains.table = learned.map_or_else(|| usual.clone(), |learner| learner.table(&usual));
+        }
+        chains
+    }
+
+    /// How many bidirectional samples it takes to find a few paths that carry light. It depends on world, settings and seed
+    /// alone, so that rounds stay unbiased.
+    fn samples_that_find(&self) -> u32 {
+        let mut samples = LEAST_SAMPLES;
+        while samples < MOST_SAMPLES {
+            if self.bootstrap(LEARNING_ROUND, samples).candidates().len() >= FEW_CANDIDATES {
+                break;
+            }
+            samples *= 4;
+        }
+        samples
+    }
+
+    fn bootstrap(&self, round: u32, samples: u32) -> Bootstrap<'a> {
+        Bootstrap { space: self.space, seed: self.cx.settings.seed, round, samples }
     }
 
     /// One round of about `mutations` mutations. `record` takes a path, its aim, and how much of the window's mean
     /// brightness its steps stand for.
     pub fn render(&self, round: u32, mutations: u64, record: impl Fn(&Path, &Aim, f64) + Sync) -> Totals {
-        let seed = self.cx.settings.seed;
-        let count = mutations.div_ceil(STEPS.into()).max(1) as usize;
-        let samples = (mutations / MUTATIONS_PER_SAMPLE).max(LEAST_SAMPLES) as u32;
-        let bootstrap = Bootstrap { space: self.space, seed, round, samples };
+        self.render_learning(round, mutations, false, record)
+    }
+
+    fn render_learning(
+        &self,
+        round: u32,
+        mutations: u64,
+        learning: bool,
+        record: impl Fn(&Path, &Aim, f64) + Sync,
+    ) -> Totals {
+        let length = self.cx.settings.metropolis.chain_length;
+        let count = mutations.div_ceil(length.into()).max(1) as usize;
+        let samples = (mutations / MUTATIONS_PER_SAMPLE).max(self.least_samples.into()) as u32;
+        let bootstrap = self.bootstrap(round, samples);
         let mut candidates = bootstrap.candidates();
         if candidates.is_empty() {
             return Totals { empty_rounds: 1, ..Totals::default() };
         }
+        let pool = Pool::of(&candidates);
         let brightness = candidates.iter().map(|c| c.weight).sum::<f64>() / f64::from(samples);
-        let seeds = resample(&mut candidates, count, &mut Rng::new(seed, Purpose::Resampling, round, 0));
-        let step = brightness / (count as f64 * f64::from(STEPS));
+        let mut rng = Rng::new(self.cx.settings.seed, Purpose::Resampling, round, 0);
+        let seeds = resample(&mut candidates, count, &mut rng);
+        let step = brightness / (count as f64 * f64::from(length));
         let (mutations, table) = (self.mutations.as_slice(), &self.table);
         let kernel = Kernel { space: self.space, mutations, table, target: &Plain };
-        Chains { cx: self.cx, kernel, round }.run(
+        let totals = Chains { cx: self.cx, kernel, round, learning }.run(
             count,
             |index, tracer, path| bootstrap.replay(&candidates[seeds[index] as usize], tracer, path),
             |path, aim, steps| record(path, aim, steps * step),
-        )
+        );
+        Totals { pool, ..totals }
     }
 }
 

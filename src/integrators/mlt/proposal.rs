@@ -16,8 +16,8 @@ use glam::{DVec2, DVec3};
 
 use super::{
     Reject,
+    lens_subpaths::LensSubpaths,
     path::{Node, Path, Space},
-    strata::Strata,
 };
 
 /// A path in the making; keeps its memory.
@@ -38,8 +38,8 @@ pub struct Proposal {
     to_eye: DVec3,
     /// Whether the lens of the eye's side is new.
     new_lens: bool,
-    /// Where the chain stands among others.
-    pub strata: Strata,
+    /// What lens subpath mutations are offered.
+    pub lens_subpaths: LensSubpaths,
     /// Rays cast so far.
     pub rays: u64,
 }
@@ -55,7 +55,7 @@ impl Default for Proposal {
             to_light: DVec3::ZERO,
             to_eye: DVec3::ZERO,
             new_lens: false,
-            strata: Strata::default(),
+            lens_subpaths: LensSubpaths::default(),
             rays: 0,
         }
     }
@@ -148,12 +148,6 @@ impl Proposal {
     /// Whether the eye's side has only a kept vertex so far, the lens.
     pub fn starts_at_kept_lens(&self) -> bool {
         self.eye == self.new.end && self.eye_end().is_some_and(|(end, _)| end.kind == Kind::Lens)
-    }
-
-    /// Whether the new vertices of the eye's side scatter smoothly anywhere between its ends.
-    pub fn has_smooth_between_ends(&self) -> bool {
-        let first = self.new.end - usize::from(self.new_lens);
-        self.path.nodes[(self.eye + 1).min(first)..first].iter().any(|node| node.vertex.connectable())
     }
 
     /// Adds `x0` as the new light end.
@@ -305,6 +299,33 @@ impl Proposal {
         let vertex = &mut self.path.nodes[self.light - 1].vertex;
         let direction = force(vertex, Side::TowardEye, self.to_light, mode)?;
         self.go_from_light(space, direction, rng)
+    }
+
+    /// Keeps the first `stem` vertices of `x` and takes the next lens subpath that is offered; answers with the number of
+    /// its vertices.
+    ///
+    /// # Errors
+    /// The subpath got lost, or the path would be too long.
+    pub fn begin_lens_subpath(&mut self, space: &Space<'_>, x: &Path, stem: usize) -> Result<usize, Reject> {
+        let mut subpaths = std::mem::take(&mut self.lens_subpaths);
+        let offered = subpaths.next(space);
+        self.rays += offered.rays;
+        let count = offered.vertices.len();
+        let begun = if count == 0 {
+            Err(Reject::Lost)
+        } else {
+            self.begin(space, x, (stem, x.nodes.len(), count)).map(|()| {
+                (self.path.raster, self.path.lens) = (offered.raster, offered.lens);
+                for (node, vertex) in self.path.nodes[stem..].iter_mut().rev().zip(&offered.vertices) {
+                    node.vertex = *vertex;
+                    node.arrived();
+                }
+                (self.eye, self.new_lens) = (stem, true);
+                count
+            })
+        };
+        self.lens_subpaths = subpaths;
+        begun
     }
 
     /// Adds vertices with their modes to the light's side.

@@ -5,7 +5,6 @@
 
 use ajar_render::{
     math::scalar,
-    path::Kind,
     rng::{Purpose, Rng},
 };
 use rayon::prelude::*;
@@ -59,30 +58,47 @@ impl<'w> Bootstrap<'w> {
 
     /// All candidates, in the order of the samples.
     pub fn candidates(&self) -> Vec<Candidate> {
-        self.candidates_where(|_, _| true)
+        self.collect(|| (), |(), candidate, _| Some(candidate))
     }
 
-    /// Those for which `wanted` holds, of the kind of x_0 and whether x_1 is connectable.
-    pub fn candidates_where(&self, wanted: impl Fn(Kind, bool) -> bool + Sync) -> Vec<Candidate> {
+    /// Those that `weigh` finds worth something, their weights multiplied by what it says of their paths.
+    pub fn candidates_worth(&self, weigh: impl Fn(&Path) -> f64 + Sync) -> Vec<Candidate> {
+        self.collect(Path::with_capacity, |path, candidate, found| {
+            self.build(path, found)?;
+            let weight = candidate.weight * weigh(path);
+            (weight > 0.0).then_some(Candidate { weight, ..candidate })
+        })
+    }
+
+    fn collect<T>(
+        &self,
+        memory: impl Fn() -> T + Sync + Send,
+        keep: impl Fn(&mut T, Candidate, &Found<'_>) -> Option<Candidate> + Sync,
+    ) -> Vec<Candidate> {
         let blocks: Vec<Vec<Candidate>> = (0..self.samples.div_ceil(BLOCK))
             .into_par_iter()
             .map_init(
-                || self.tracer(),
-                |tracer, block| {
-                    let mut found = Vec::new();
-                    let samples = block * BLOCK..((block + 1) * BLOCK).min(self.samples);
-                    samples.for_each(|i| {
-                        self.visit(tracer, i, |f| {
-                            if wanted(f.light_kind(), f.second_is_connectable()) {
-                                found.extend(self.candidate(i, f));
-                            }
+                || (self.tracer(), memory()),
+                |(tracer, memory), block| {
+                    let mut kept = Vec::new();
+                    for i in block * BLOCK..((block + 1) * BLOCK).min(self.samples) {
+                        self.visit(tracer, i, |found| {
+                            kept.extend(self.candidate(i, found).and_then(|c| keep(memory, c, found)));
                         });
-                    });
-                    found
+                    }
+                    kept
                 },
             )
             .collect();
         blocks.concat()
+    }
+
+    /// Builds the path that a technique found; `None` if rounding lost it.
+    fn build(&self, path: &mut Path, found: &Found<'_>) -> Option<()> {
+        path.nodes.clear();
+        found.vertices(|vertex| path.nodes.push(Node::new(vertex)));
+        (path.raster, path.lens) = (found.raster, found.lens);
+        path.measure(&self.space, (0, path.edges()), found.s.checked_sub(1)).ok()
     }
 
     /// Runs sample `index`; paths of a single edge are not for chains.
@@ -118,17 +134,13 @@ impl<'w> Bootstrap<'w> {
     /// Builds the path of a candidate into `path`; `None` if rounding lost it.
     pub fn replay(&self, candidate: &Candidate, tracer: &mut Tracer<'_>, path: &mut Path) -> Option<()> {
         let [s, t] = candidate.technique.map(usize::from);
-        path.nodes.clear();
+        let mut built = None;
         self.visit(tracer, candidate.sample, |found| {
             if (found.s, found.t) == (s, t) {
-                found.vertices(|vertex| path.nodes.push(Node::new(vertex)));
-                (path.raster, path.lens) = (found.raster, found.lens);
+                built = self.build(path, found);
             }
         });
-        if path.nodes.is_empty() {
-            return None;
-        }
-        path.measure(&self.space, (0, path.edges()), s.checked_sub(1)).ok()
+        built
     }
 }
 
@@ -141,6 +153,45 @@ fn morton(raster: glam::DVec2) -> u32 {
         (x | x << 1) & 0x5555_5555
     };
     spread(raster.x as u32 & 0xFFFF) | spread(raster.y as u32 & 0xFFFF) << 1
+}
+
+/// How evenly candidates share what they carry: a few heavy ones make a noisy round.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pool {
+    /// Candidates.
+    pub size: u64,
+    /// What all of them carry.
+    pub total: f64,
+    /// What the heaviest thousandth of them, at least one, carries.
+    pub heaviest: f64,
+}
+
+impl Pool {
+    /// That of `candidates`.
+    pub fn of(candidates: &[Candidate]) -> Self {
+        let mut weights: Vec<f64> = candidates.iter().map(|c| c.weight).collect();
+        let heavy = weights.len().div_ceil(1000);
+        if heavy < weights.len() {
+            weights.select_nth_unstable_by(heavy, |a, b| b.total_cmp(a));
+        }
+        Self {
+            size: weights.len() as u64,
+            total: weights.iter().sum(),
+            heaviest: weights[..heavy].iter().sum(),
+        }
+    }
+
+    /// Adds those of another round.
+    pub fn add(&mut self, other: &Self) {
+        self.size += other.size;
+        self.total += other.total;
+        self.heaviest += other.heaviest;
+    }
+
+    /// The share that the heaviest thousandth carries.
+    pub fn heavy_share(&self) -> f64 {
+        if self.total > 0.0 { self.heaviest / self.total } else { 0.0 }
+    }
 }
 
 /// Draws `count` seeds in proportion to their weights, at even steps through all candidates, sorted by length and place

@@ -9,7 +9,8 @@ use ajar_integrators::mlt::{
     Aux, Mutation, Reject,
     chain::{Kernel, State, ratio},
     choice::{MAX_MUTATIONS, Selection, Table},
-    mutations::{Bidirectional, mutations},
+    manifold::{Walker, generalized_geometry},
+    mutations::{Bidirectional, Lens, mutations},
     path::{Path, Signature, Space},
     proposal::Proposal,
     seeds::{Bootstrap, resample},
@@ -17,9 +18,12 @@ use ajar_integrators::mlt::{
 };
 use ajar_render::{
     World,
+    math::Frame,
+    path::{Site, Vertex},
     rng::{Purpose, Rng},
 };
 use common::{scenes::SCENES, settings};
+use glam::DVec3;
 
 /// Paths in proportion to their contribution.
 fn seeds(world: &World, depth: usize, count: usize) -> (Space<'_>, Vec<Path>) {
@@ -109,6 +113,101 @@ fn bidirectional_densities_are_true() {
         println!("{k} edges: {mean:.4} by proposals, {:.4} by bidirectional samples, z {z:.2}", by_length[k]);
         assert!(z.abs() < 4.0, "{k} edges: {mean} {}", by_length[k]);
     }
+}
+
+/// The lens perturbation's density: how often a vertex lands on a part of a surface is what the raster kernel and the
+/// camera say (V4).
+#[test]
+fn lens_perturbations_land_where_their_density_says() {
+    const PROPOSALS: usize = 400_000;
+    let scene = &SCENES[0];
+    let world = (scene.world)();
+    let (space, paths) = seeds(&world, scene.depth, 64);
+    // From one diffuse surface to others, well inside the image.
+    let x = paths
+        .iter()
+        .find(|x| x.edges() == 3 && (x.raster - glam::DVec2::splat(16.0)).length() < 5.0)
+        .unwrap();
+    let largest = (0.05 * space.window.pixels() as f64 / std::f64::consts::PI).sqrt();
+    let kernel = |r: f64| {
+        let inside = (0.1..largest).contains(&r);
+        if inside { 1.0 / (std::f64::consts::TAU * r * r * (largest / 0.1).ln()) } else { 0.0 }
+    };
+    let mut rng = Rng::new(6, Purpose::Test, 0, 0);
+    let (mut y, mut landed, mut by_triangle) = (Proposal::default(), 0.0, BTreeMap::<_, f64>::new());
+    y.follow(x);
+    for _ in 0..PROPOSALS {
+        let Ok(_) = Lens.propose(&space, x, &mut y, &mut rng) else { continue };
+        let site = y.path.nodes[2].vertex.site;
+        *by_triangle.entry((site.instance, site.triangle)).or_default() += 1.0;
+        landed += 1.0;
+    }
+    let mut checked = 0;
+    for ((instance, triangle), count) in by_triangle.into_iter().filter(|(_, count)| *count > 0.02 * landed) {
+        // Uniform points of the triangle, seen from the lens and by the vertex before, in place of proposals.
+        const POINTS: usize = 200_000;
+        let [a, b, c] = world.geometry().vertices(instance, triangle);
+        let area = 0.5 * (b - a).cross(c - a).length();
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for _ in 0..POINTS {
+            let uv = ajar_render::warp::square_to_triangle(rng.pair());
+            let mut path = x.clone();
+            path.nodes[2].vertex = world.surface(Site { instance, triangle, uv });
+            let Some(seen) = world.camera.connect(path.nodes[2].vertex.p, x.lens) else { continue };
+            if space.pixel(seen.raster).is_none()
+                || world.passed(&path.nodes[2].vertex, &path.nodes[3].vertex) == 0.0
+                || path.measure(&space, (1, 3), Some(1)).is_err()
+            {
+                continue;
+            }
+            let raster_per_area = path.nodes[3].to_light * space.window.pixels() as f64;
+            let density = kernel((seen.raster - x.raster).length()) * raster_per_area;
+            sum += density;
+            squares += density * density;
+        }
+        let n = POINTS as f64;
+        let (expected, spread) = (area * sum / n, area * (squares / n - (sum / n).powi(2)).max(0.0).sqrt());
+        let found = count / PROPOSALS as f64;
+        let z = (found - expected) / (spread / n.sqrt()).hypot((found / PROPOSALS as f64).sqrt());
+        println!("triangle {triangle} of {instance}: {found:.4} found, {expected:.4} expected, z {z:.2}");
+        assert!(z.abs() < 4.0, "triangle {triangle} of {instance}: {found} {expected}");
+        checked += 1;
+    }
+    assert!(checked >= 2, "{checked}");
+}
+
+/// How much the light's direction turns when the end of a chain moves, by derivatives and by differences.
+#[test]
+fn chains_turn_as_their_derivatives_say() {
+    const STEP: f64 = 2e-4;
+    let scene = SCENES.iter().find(|scene| scene.name == "mirror and glass").unwrap();
+    let world = (scene.world)();
+    let (_, paths) = seeds(&world, scene.depth, 2000);
+    let (mut checked, mut wrong) = (0, 0);
+    for x in &paths {
+        let k = x.edges();
+        let Some(b) = (2..k).find(|&i| x.connectable(i) && !x.connectable(i - 1)) else { continue };
+        let Some(c) = (0..b).rev().find(|&i| x.connectable(i)) else { continue };
+        let chain: Vec<Vertex> = x.nodes[c..=b].iter().map(|node| node.vertex).collect();
+        let Some(geometry) = generalized_geometry(&world, &chain) else { continue };
+        let frame = Frame::from_z(chain[b - c].ng);
+        let mut walker = Walker { world: &world, rays: 0 };
+        let mut direction = |offset: DVec3| {
+            let (mut moved, mut end) = (chain.clone(), chain[b - c]);
+            (end.p, end.rounding) = (end.p + offset, 0.0);
+            walker.move_end(&mut moved, &end).ok()?;
+            Some((moved[1].p - moved[0].p).normalize())
+        };
+        let mut slope = |w: DVec3| Some((direction(w * STEP)? - direction(-w * STEP)?) / (2.0 * STEP));
+        let (Some(s), Some(t)) = (slope(frame.x), slope(frame.y)) else { continue };
+        let w = (chain[1].p - chain[0].p).normalize();
+        let turned = s.cross(t).length() * chain[0].projected(w);
+        checked += 1;
+        wrong += usize::from((turned / geometry - 1.0).abs() > 0.02);
+    }
+    println!("{checked} chains, {wrong} of them over the edges of triangles");
+    // Over an edge the surface turns at once, so that differences tell nothing.
+    assert!(checked > 50 && wrong * 10 < checked, "{wrong} of {checked}");
 }
 
 /// A mutation of a world with few states, told apart by their raster position: from state i to j with chance q_ij.

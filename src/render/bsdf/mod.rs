@@ -248,6 +248,15 @@ impl Bsdf {
         }
     }
 
+    /// Probabilities of choosing perfect reflection and perfect transmission given `known`.
+    pub fn dirac_chances(&self, side: Side, known: DVec3) -> [f64; 2] {
+        if !self.has_delta() {
+            return [0.0; 2];
+        }
+        [Mode::DeltaReflect, Mode::DeltaTransmit]
+            .map(|mode| self.delta(side, known, mode).map_or(0.0, |event| event.probability))
+    }
+
     /// Whether some lobe has a density.
     #[inline]
     pub fn has_smooth(&self) -> bool {

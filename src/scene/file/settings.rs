@@ -28,6 +28,9 @@ pub(super) fn render(mut keys: Keys<'_>) -> RenderSettings {
         max_depth: keys.optional("max_depth", whole(1..=i64::from(u32::MAX))).map(|depth| depth as u32),
         crop: keys.optional("crop", crop),
         mutations: keys.table("mutations").map(|keys| keys.numbers_by_name(0.0..)).unwrap_or_default(),
+        mutation_choice: keys.optional("mutation_choice", text),
+        chain_length: keys.optional("chain_length", whole(1..=i64::from(u32::MAX))).map(|steps| steps as u32),
+        lens_subpaths: keys.optional("lens_subpaths", text),
     };
     if settings.noise == Some(0.0) {
         keys.complain("noise", Complaint::new("must be greater than 0, is 0"));

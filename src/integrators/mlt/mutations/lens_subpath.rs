@@ -1,10 +1,7 @@
-//! Lens subpath mutation (Veach & Guibas 1997 §4.3.4): suffix (L|D)DS*E. A new eye subpath through a stratified raster
-//! position replaces the old one, so that chains spread evenly over the image.
-//!
-//! The seed paper lets each chain work through a list of pixels; then proposals depend on the chain's past. Here the
-//! strata are dealt out across the chains of a round ([`super::super::strata`]).
+//! Lens subpath mutation (Veach & Guibas 1997 §4.3.4): suffix (L|D)DS*E. Another eye subpath replaces the old one up to
+//! the first smooth vertex, so that chains spread evenly over the image.
 
-use ajar_render::rng::Rng;
+use ajar_render::{bsdf::Side, rng::Rng};
 
 use super::super::{
     Aux, Mutation, Reject,
@@ -31,21 +28,19 @@ impl Mutation for LensSubpath {
         end(x).is_some()
     }
 
-    fn propose(&self, space: &Space<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Result<Aux, Reject> {
+    fn propose(&self, space: &Space<'_>, x: &Path, y: &mut Proposal, _: &mut Rng) -> Result<Aux, Reject> {
         let (end, k) = (end(&x.signature).ok_or(Reject::Unsuitable)?, x.edges());
-        y.begin(space, x, (end, k + 1, k + 1 - end))?;
-        y.path.raster = space.raster(y.strata.next(rng.pair()));
-        y.push_lens(space, rng.pair());
-        y.sample_from_eye(space, k - end, rng)?;
-        if y.has_smooth_between_ends() {
-            return Err(Reject::Unsuitable);
-        }
+        let added = y.begin_lens_subpath(space, x, end)?;
         y.join(space)?;
-        Ok(Aux { stem: end, removed: k + 1 - end, added: k + 1 - end, ..Aux::default() })
+        Ok(Aux { stem: end, removed: k + 1 - end, added, ..Aux::default() })
     }
 
     fn q(&self, _: &Space<'_>, _: &Path, y: &Path, aux: &Aux) -> f64 {
         let density: f64 = (aux.stem..=y.edges()).map(|i| y.from_eye(i)).product();
-        density / (y.nodes[aux.stem - 1].passed * y.scalar())
+        // The subpath ended because no Dirac event was chosen.
+        let node = &y.nodes[aux.stem];
+        let known = node.vertex.frame.to_local(node.edge.to_eye);
+        let [reflect, transmit] = node.vertex.bsdf.dirac_chances(Side::TowardLight, known);
+        density * (1.0 - reflect - transmit) / (y.nodes[aux.stem - 1].passed * y.scalar())
     }
 }

@@ -91,7 +91,7 @@ fn look(position: DVec3, target: DVec3) -> DAffine3 {
 
 pub fn settings(world: &World, seed: u64, max_depth: usize, samples_per_round: u32) -> Settings {
     let window = Window { x0: 0, y0: 0, x1: world.camera.width, y1: world.camera.height };
-    Settings { seed, max_depth, samples_per_round, window, mutations: Default::default() }
+    Settings { seed, max_depth, samples_per_round, window, metropolis: Default::default() }
 }
 
 /// Renders `rounds` rounds.

@@ -9,9 +9,9 @@ use ajar_integrators::{
         Mutation,
         chain::{Chain, Kernel},
         choice::{CLASSES, Table, class},
+        lens_subpaths::{LensSubpaths, Spread},
         path::{Path, Space},
         seeds::{Bootstrap, Candidate, resample},
-        strata::Strata,
         target::Target,
     },
 };
@@ -137,7 +137,13 @@ pub fn drift(
                     if bootstrap.replay(&candidates[chosen[i] as usize], &mut tracer, &mut path).is_none() {
                         continue;
                     }
-                    chain.start(&path, stream(i), Strata::new(i as u32, seeds as u32, 0));
+                    chain.share(LensSubpaths::new(
+                        Spread::AcrossChains,
+                        (settings.seed, steps),
+                        i as u32,
+                        seeds as u32,
+                    ));
+                    chain.start(&path, stream(i));
                     for q in features(&path, world) {
                         change.push((q, -1.0));
                         sums[q][2] += 1.0;

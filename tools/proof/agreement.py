@@ -1,0 +1,127 @@
+"""Makes docs/agreement.md: do all integrators, and each mutation beside the bidirectional one, show the same image?
+
+    cargo build --release && .venv/bin/python tools/proof/agreement.py [--seconds 10] [SCENE...]
+
+Every scene is rendered small by `bdpt`, for three times as long, and by every other way. Blocks of 8 x 8 pixels and
+the whole image are compared by Welch's t-test from the spread of rounds. The table holds the largest |t| of all
+blocks and channels, as the standard score that is as unlikely; scores beyond `LIMIT` are marked.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from statistics import NormalDist
+
+import numpy as np
+from agreement_scenes import SCENES, write
+from ajar_tools.gates.statistical import Level
+from ajar_tools.picture import Picture, read
+from ajar_tools.statistics import WHOLE
+from ajar_tools.student import two_sided_t
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs" / "agreement.md"
+OURS = ("cornell", "caustic-glass", "door-ajar", "many-lights", "materials", "window-room")
+MUTATIONS = (
+    "bidirectional",
+    "lens",
+    "caustic",
+    "multi-chain",
+    "window",
+    "technique",
+    "eye-chain",
+    "light-chain",
+    "lens-subpath",
+    "manifold",
+)
+SIZE = "64x48"
+DEPTH = "10"
+# Some hundred blocks and channels a scene, some hundred images: one score beyond it in a hundred tables.
+LIMIT = 5.2
+
+
+def ways() -> dict[str, list[str]]:
+    """Columns of the table and the flags that make them."""
+    columns = {"path": ["--integrator", "path"]}
+    for name in MUTATIONS:
+        off = [f"render.mutations.{other}=0" for other in MUTATIONS if other not in (name, "bidirectional")]
+        flags = [word for setting in off for word in ("--set", setting)]
+        columns[name] = ["--integrator", "mlt", *flags]
+    columns["mlt"] = ["--integrator", "mlt"]
+    columns["ajar"] = ["--integrator", "ajar"]
+    return columns
+
+
+def render(program: str, scene: Path, exr: Path, seconds: float, seed: int, flags: Sequence[str]) -> Picture:
+    command = [program, "render", str(scene), "-o", str(exr), "--size", SIZE, "--max-depth", DEPTH, "--float", "-q"]
+    command += ["--time", f"{seconds}s", "--seed", str(seed), *flags]
+    subprocess.run(command, check=True)
+    return read(exr)
+
+
+def score(a: Picture, b: Picture, side: int) -> float:
+    """The largest |t| of blocks and channels, as a standard score."""
+    assert a.statistics is not None
+    assert b.statistics is not None
+    level = Level(a, b, a.statistics, b.statistics, side)
+    p = two_sided_t(np.abs(level.t).reshape(-1), level.freedom.reshape(-1))
+    return -NormalDist().inv_cdf(max(float(p.min()), 1e-300) / 2)
+
+
+def row(program: str, name: str, scene: Path, seconds: float, work: Path) -> str:
+    reference = render(program, scene, work / "bdpt.exr", 3 * seconds, 1, ["--integrator", "bdpt"])
+    cells = []
+    for seed, (way, flags) in enumerate(ways().items(), 2):
+        picture = render(program, scene, work / f"{way}.exr", seconds, seed, flags)
+        blocks, whole = score(picture, reference, 8), score(picture, reference, WHOLE)
+        mark = " **!**" if max(blocks, whole) > LIMIT else ""
+        cells.append(f"{blocks:.1f} / {whole:.1f}{mark}")
+        print(f"{name:14} {way:14} blocks {blocks:.2f} image {whole:.2f}", flush=True)
+    return f"| {name} | " + " | ".join(cells) + " |"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("scenes", nargs="*", help="default: all")
+    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--ajar", default=str(ROOT / "target" / "release" / "ajar"))
+    given = parser.parse_args()
+    names = given.scenes or [*OURS, *SCENES]
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in names:
+            work = Path(folder, name)
+            work.mkdir()
+            ours = ROOT / "scenes" / name / "scene.toml"
+            scene = ours if ours.exists() else write(name, work)
+            rows.append(row(given.ajar, name, scene, given.seconds, work))
+    columns = ["scene", "path", *(f"{m}" if m == "bidirectional" else f"+ {m}" for m in MUTATIONS), "mlt", "ajar"]
+    table = [f"| {' | '.join(columns)} |", "|" + "---|" * len(columns), *rows]
+    if given.scenes:
+        print("\n".join(table))
+        return
+    PAGE.write_text(HEAD.format(seconds=given.seconds, size=SIZE, depth=DEPTH, limit=LIMIT) + "\n".join(table) + "\n")
+    print(f"wrote {PAGE}")
+
+
+HEAD = """# All integrators show the same image
+
+Made by `.venv/bin/python tools/proof/agreement.py --seconds {seconds:g}`: images of {size} pixels and paths of at
+most {depth} edges, each way for {seconds:g} seconds, against `bdpt` for three times as long. A cell holds the
+largest difference among blocks of 8×8 pixels and that of the whole image, as standard scores; both come from the
+spread of independent rounds. Chance alone makes the largest of a row of blocks about 3; what is beyond {limit}
+would be marked. The columns from `bidirectional` to `+ manifold` are `mlt` with the bidirectional mutation and one
+other.
+
+`lens` has depth of field; `lattice` textures, normal maps, cut-outs and a half-transparent sheet; `pool` light that
+reaches the camera through moving water both ways; `window-room` sun and sky; `many-lights` some hundred lamps.
+
+"""
+
+if __name__ == "__main__":
+    sys.exit(main())
