@@ -25,7 +25,7 @@ fn anisotropy() {
 #[test]
 fn sheen() {
     let found = json!({
-        "sheenColorFactor": [0.1, 0.2, 1.5], "sheenColorTexture": {"index": 0},
+        "sheenColorFactor": [0.1, 0.2, 1.0], "sheenColorTexture": {"index": 0},
         "sheenRoughnessFactor": 0.25, "sheenRoughnessTexture": {"index": 0},
     });
     let (made, imported) = material(json!({"extensions": {"KHR_materials_sheen": found}}));

@@ -49,7 +49,7 @@ pub struct Layered {
     pub bounced: Rgb,
     /// Scale of the lobe that carries it.
     pub gap_scale: f64,
-    /// The dielectric's share of `bounced` for white.
+    /// The dielectric's share of `bounced` for white, or under a film for the channel that reflects most.
     bounced_white: f64,
     /// Share of the diffuse body over the mean of what reaches it.
     pub diffuse_scale: f64,
@@ -132,7 +132,11 @@ impl Layered {
         let [metal, dielectric] = self.mean_reflectance();
         let bounced = |c: Rgb| c.map(|c| compensation::bounced(c, average.total));
         let dielectric = match self.film {
-            Some(_) => bounced(dielectric),
+            Some(_) => {
+                let dielectric = bounced(dielectric);
+                self.bounced_white = dielectric.max_element();
+                dielectric
+            }
             None => self.normal * self.bounced_white,
         };
         self.bounced = bounced(metal) * self.metallic() + dielectric * self.opaque;
@@ -214,8 +218,8 @@ impl Layered {
                 normal * a.reflected + (self.specular - normal) * a.edge
             }
         };
-        let again = self.normal.max_element() * self.bounced_white;
-        let again = if self.film.is_some() { again.max(self.bounced.max_element()) } else { again };
+        let tint = if self.film.is_some() { 1.0 } else { self.normal.max_element() };
+        let again = tint * self.bounced_white;
         (1.0 - once - again * (1.0 - a.total)).clamp(0.0, 1.0)
     }
 

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, sync::Arc};
 
-use ajar_scene::{Diagnostic, Id, Image, LightKind, Material, Scene};
+use ajar_scene::{Diagnostic, Id, Image, LightKind, Scene};
 use rayon::prelude::*;
 
 use super::{
