@@ -32,15 +32,18 @@ def arguments() -> argparse.Namespace:
 def convert(args: argparse.Namespace, report: Report) -> Document:
     """The scene that the file holds."""
     # Packages that are not there are told as an error, and --probe needs none of them.
-    from . import layers, stage, walk
+    from . import layers, mtlx, stage, walk
 
     jail = layers.Jail(args.file, args.allow)
     with report.listening():
-        layers.check(args.file, jail, args.memory_limit, report)
+        found = layers.check(args.file, jail, args.memory_limit, report)
+        # Held until the stage is read.
+        held = [*found, *mtlx.resolve(found, report)]
         moment = stage.Moment(args.frame, args.seconds, args.fps)
-        opened = stage.open_stage(args.file, args.variant, moment, jail, report)
+        opened = stage.open_stage(args.file, args.variant, moment, report)
         document = Document(args.memory_limit)
         walk.Walk(opened, document, jail, report).run()
+        del held
     return document
 
 

@@ -9,9 +9,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdSkel
 
-from . import mtlx
 from .document import Matrix
-from .layers import Jail
 from .report import Report, StageError, commentary
 
 DEFAULT_RATE = 24.0
@@ -47,14 +45,13 @@ class Moment:
     rate: float | None = None
 
 
-def open_stage(file: Path, variants: list[str], moment: Moment, jail: Jail, report: Report) -> Opened:
+def open_stage(file: Path, variants: list[str], moment: Moment, report: Report) -> Opened:
     """Composes the stage in `file`."""
     try:
         stage = Usd.Stage.Open(str(file))
     except Tf.ErrorException as error:
         raise StageError(f"is no USD that can be read: {commentary(error)}") from error
     stage.SetEditTarget(stage.GetSessionLayer())
-    mtlx.resolve(stage, jail, report)
     for variant in variants:
         select(stage, variant)
     time = time_code(stage, moment, report)
@@ -150,5 +147,18 @@ def bake_skins(stage: Usd.Stage, time: Usd.TimeCode) -> None:
             prim = stage.GetPrimAtPath(path)
             if prim.IsInstance():
                 prim.SetInstanceable(False)
+    for prim in stage.Traverse():
+        if prim.IsA(UsdGeom.PointBased) and prim.HasAPI(UsdSkel.BindingAPI):
+            move_normals(prim, time)
     value = time.GetValue() if time.IsNumeric() else 0.0
     UsdSkel.BakeSkinning(Usd.PrimRange(stage.GetPseudoRoot()), Gf.Interval(value, value))
+
+
+def move_normals(prim: Usd.Prim, time: Usd.TimeCode) -> None:
+    """Makes the primvar `normals` the attribute, for skinning bends that and leaves the primvar, which would count."""
+    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar("normals")
+    if primvar and primvar.HasValue():
+        shape = UsdGeom.PointBased(prim)
+        shape.CreateNormalsAttr(primvar.ComputeFlattened(time))
+        shape.SetNormalsInterpolation(primvar.GetInterpolation())
+        UsdGeom.PrimvarsAPI(prim).BlockPrimvar("normals")
