@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,7 +33,11 @@ def turned(profile: ArrayLike, segments: int = 16, sharp: Sequence[int] = (), sh
     angles = 2 * np.pi * np.arange(segments) / segments
     circle = np.stack([np.cos(angles), -np.sin(angles)], axis=1)
     points = np.stack(
-        [np.outer(rings[:, 0], circle[:, 0]), np.repeat(rings[:, 1:], segments, 1), np.outer(rings[:, 0], circle[:, 1])],
+        [
+            np.outer(rings[:, 0], circle[:, 0]),
+            np.repeat(rings[:, 1:], segments, 1),
+            np.outer(rings[:, 0], circle[:, 1]),
+        ],
         axis=-1,
     ).reshape(-1, 3)
     side = np.arange(segments)
@@ -43,7 +48,7 @@ def turned(profile: ArrayLike, segments: int = 16, sharp: Sequence[int] = (), sh
     along = 1 - np.arange(len(rings)) / (len(rings) - 1)
     ring_uvs = [np.stack(np.broadcast_arrays(
         np.column_stack([side, side + 1, side + 1, side]) / segments, [low, low, high, high]), -1).reshape(-1, 2)
-        for low, high in zip(along[:-1], along[1:], strict=True)]  # fmt: skip
+        for low, high in pairwise(along)]  # fmt: skip
     ends = [np.tile([0.5, level], (segments, 1)) for level in (1.0, 0.0)]
     counts = np.concatenate([np.full(len(quads) * segments, 4), [segments, segments]])
     creases = [np.column_stack([ring * segments + side, ring * segments + after]) for ring in sharp]

@@ -119,7 +119,7 @@ def coordinates(uvs: Array, interpolation: str = "vertex") -> str:
 
 
 def preview_surface(name: str, path: str, maps: dict[str, str] | None = None, **inputs: Any) -> str:
-    """A material of UsdPreviewSurface at `path`; `maps` names image files of inputs, those called normal being normal maps."""
+    """A material of UsdPreviewSurface at `path`; `maps` names image files of inputs, `normal` a normal map."""
     shader, textures = [], []
     for key, value in inputs.items():
         kind = "color3f" if isinstance(value, tuple) else "float"

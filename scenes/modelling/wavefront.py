@@ -33,7 +33,11 @@ class Wavefront:
         self.lines.append(f"o {name}")
         for mesh, material in parts:
             uvs = np.column_stack([mesh.uvs[:, 0], 1 - mesh.uvs[:, 1]])
-            columns = [self._values("v", mesh.positions, 5), self._values("vt", uvs, 4), self._values("vn", mesh.normals, 4)]
+            columns = [
+                self._values("v", mesh.positions, 5),
+                self._values("vt", uvs, 4),
+                self._values("vn", mesh.normals, 4),
+            ]
             self.lines.append(f"usemtl {material}")
             for corners in mesh.triangles:
                 self.lines.append("f " + " ".join("/".join(str(column[i]) for column in columns) for i in corners))

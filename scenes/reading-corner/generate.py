@@ -42,9 +42,10 @@ def shell(obj: Wavefront) -> None:
     boards = surfaced(obj, "Boards", textures.planks(1024, 21, 6, (0.50, 0.34, 0.20), (0.31, 0.19, 0.11)), 2.0)
     wall = surfaced(obj, "Wall", textures.plaster(512, 22, (0.36, 0.47, 0.45)), 1.2)
     white = obj.material("Paint", Kd=(0.74, 0.72, 0.68), Pr=0.4, Ni=1.5)
+    woven = textures.rug(768, 23, (0.47, 0.13, 0.10), (0.16, 0.15, 0.22), (0.80, 0.66, 0.42))
     rug = obj.material(
         "Rug", Kd=(1, 1, 1), Pr=1,
-        map_Kd=save_image("rug.jpg", textures.rug(768, 23, (0.47, 0.13, 0.10), (0.16, 0.15, 0.22), (0.80, 0.66, 0.42)).color),
+        map_Kd=save_image("rug.jpg", woven.color),
     )  # fmt: skip
     obj.add("Floor", (floor(5.0, 5.0).moved(z=1.0).with_uv_scale(0.6), boards))
     back = quad((-2.5, 2.7, -1.3), (5.0, 0, 0), (0, -2.7, 0)).with_uv_scale(0.7)
@@ -61,14 +62,27 @@ def seat(obj: Wavefront) -> None:
     """The chair with a cushion, and a low table with books and a cup."""
     oak = surfaced(obj, "Oak", textures.wood(512, 24, (0.55, 0.38, 0.22), (0.37, 0.23, 0.12)), 1.5)
     cloth = obj.material(
-        "Cushion", Kd=(1, 1, 1), Pr=1, map_Kd=save_image("cushion.jpg", textures.linen(512, 25, (0.71, 0.52, 0.20)).color)
+        "Cushion",
+        Kd=(1, 1, 1),
+        Pr=1,
+        map_Kd=save_image("cushion.jpg", textures.linen(512, 25, (0.71, 0.52, 0.20)).color),
     )
     chair = furniture.chair().rotated("y", 28.0).moved(0.12, 0.012, -0.32)
     pad = rounded_box((0.38, 0.055, 0.38), 0.026, 3).with_uv_scale(6.0).rotated("y", 28.0).moved(0.12, 0.487, -0.32)
     obj.add("Chair", (chair, oak), (pad, cloth))
     obj.add("Table", (furniture.table(0.52, 0.42, 0.46, 0.035, 0.024).moved(0.80, 0.012, -0.48), oak))
     glaze = obj.material("Glaze", Kd=(0.07, 0.16, 0.26), Pr=0.12, Ni=1.5, Pc=1, Pcr=0.05)
-    wall = [(0, 0), (0.026, 0), (0.036, 0.012), (0.041, 0.05), (0.042, 0.082), (0.038, 0.082), (0.036, 0.05), (0.03, 0.014), (0, 0.01)]
+    wall = [
+        (0, 0),
+        (0.026, 0),
+        (0.036, 0.012),
+        (0.041, 0.05),
+        (0.042, 0.082),
+        (0.038, 0.082),
+        (0.036, 0.05),
+        (0.03, 0.014),
+        (0, 0.01),
+    ]
     obj.add("Cup", (lathe(wall, 48, 50.0).moved(0.95, 0.472, -0.37), glaze))
     books(obj)
 
@@ -77,7 +91,12 @@ def books(obj: Wavefront) -> None:
     """A pile on the table and one that lies open on nothing but its cover, on the chair."""
     paper = obj.material("Pages", Kd=(0.80, 0.75, 0.64), Pr=0.9)
     level = 0.472
-    covers = [("Umber", (0.20, 0.07, 0.035)), ("Sea", (0.025, 0.13, 0.15)), ("Mustard", (0.52, 0.32, 0.05)), ("Wine", (0.23, 0.02, 0.04))]
+    covers = [
+        ("Umber", (0.20, 0.07, 0.035)),
+        ("Sea", (0.025, 0.13, 0.15)),
+        ("Mustard", (0.52, 0.32, 0.05)),
+        ("Wine", (0.23, 0.02, 0.04)),
+    ]
     sizes = [(0.042, 0.245, 0.175), (0.031, 0.225, 0.16), (0.036, 0.21, 0.15), (0.024, 0.19, 0.135)]
     for (name, color), size, turn in zip(covers, sizes, (12, -9, 24, -28), strict=True):
         material = obj.material(f"Cover {name}".replace(" ", "_"), Kd=color, Pr=0.45, Ni=1.5)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """A tea table by a window: cups and a pot of MaterialX glazes, a lacquered tray, mandarins scattered by an instancer.
 
-`assets/` holds what `scene.usda` references: a cup with variants of its glaze and filling, a pot, a bowl of fruit, and the
-room. The glazes are in `glazes.mtlx`.
+`assets/` holds what `scene.usda` references: a cup with variants of its glaze and filling, a pot, a bowl of fruit, and
+the room. The glazes are in `glazes.mtlx`.
 """
 
 import sys
@@ -95,7 +95,15 @@ def fruit() -> None:
         (0.120, 0.070), (0.1185, 0.0725), (0.116, 0.070), (0.107, 0.053), (0.076, 0.031), (0.030, 0.018),
     ]  # fmt: skip
     skin = cage.turned(
-        [(0.004, -0.0255), (0.012, -0.0245), (0.027, -0.018), (0.034, 0.0), (0.026, 0.019), (0.012, 0.0235), (0.003, 0.021)]
+        [
+            (0.004, -0.0255),
+            (0.012, -0.0245),
+            (0.027, -0.018),
+            (0.034, 0.0),
+            (0.026, 0.019),
+            (0.012, 0.0235),
+            (0.003, 0.021),
+        ]
     )
     star = cage.turned([(0.0015, 0.020), (0.0045, 0.0215), (0.002, 0.0245), (0.0008, 0.0255)], 8)
     peel = usda.smooth("Peel", skin, "/Fruit/Looks/Peel", 2.0)
@@ -143,7 +151,7 @@ def cloth() -> Mesh:
 
 
 def window() -> Mesh:
-    """The wall with the window that the sun shines through: two sashes with a bar across, about the origin, facing +Z."""
+    """The wall with the window that the sun shines through: two sashes with a bar across, about the origin."""
     sashes = [(1.18, 0.88, 1.57, 1.62), (1.63, 0.88, 2.02, 1.62)]
     bar = box((1.1, 1.225, -0.07), (2.1, 1.275, -0.02))
     return merge([wall(3.2, 2.6, 0.09, sashes), bar]).moved(-1.6, -1.25, 0.045)
@@ -151,8 +159,8 @@ def window() -> Mesh:
 
 def room() -> None:
     """Table, runner, tray, the wall behind and that with the window."""
-    tray = [(0.02, 0.004), (0.17, 0.004), (0.176, 0.002), (0.186, 0.004), (0.198, 0.022), (0.196, 0.0235), (0.193, 0.022),
-            (0.182, 0.009), (0.172, 0.0075), (0.03, 0.0075)]  # fmt: skip
+    tray = [(0.02, 0.004), (0.17, 0.004), (0.176, 0.002), (0.186, 0.004), (0.198, 0.022), (0.196, 0.0235),
+            (0.193, 0.022), (0.182, 0.009), (0.172, 0.0075), (0.03, 0.0075)]  # fmt: skip
     back = quad((-2.0, 1.6, -0.62), (4.0, 0.0, 0.0), (0.0, -2.2, 0.0))
     parts = [
         usda.faceted("Table", floor(2.4, 1.3).with_uv_scale(1.1), "/Room/Looks/Oak"),
@@ -160,7 +168,9 @@ def room() -> None:
         usda.faceted("Runner", cloth(), "/Room/Looks/Linen"),
         usda.smooth("Tray", cage.turned(tray, 24), "/Room/Looks/Lacquer"),
         usda.prim(
-            "Xform", "Window", usda.faceted("Frame", window(), "/Room/Looks/Plaster"),
+            "Xform",
+            "Window",
+            usda.faceted("Frame", window(), "/Room/Looks/Plaster"),
             *usda.placed((-0.8976, 0.64, 0.4879), (-30.0, -62.0, 0.0)),
         ),
     ]

@@ -132,7 +132,11 @@ def materialx(path: Path, kind: str) -> None:
     weight, metalness, emission = words[kind]
     lines = ['<?xml version="1.0"?>', '<materialx version="1.38" colorspace="lin_rec709">']
     for look in LOOKS:
-        values = [("float", weight, 1.0), ("float", metalness, look.metallic), ("float", "specular_roughness", look.roughness)]
+        values = [
+            ("float", weight, 1.0),
+            ("float", metalness, look.metallic),
+            ("float", "specular_roughness", look.roughness),
+        ]
         values += [("color3", "base_color", look.color)] if not look.image else []
         values += [("color3", "emission_color", look.emission), ("float", emission, 1.0)] if look.emission else []
         if look.image:

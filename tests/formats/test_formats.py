@@ -9,7 +9,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
 from ajar_tools.cases import ajar
 from ajar_tools.comparison import compare
 from ajar_tools.verdict import Outcome

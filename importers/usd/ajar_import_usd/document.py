@@ -59,7 +59,7 @@ class Document:
     def array(self, values: np.ndarray | Sequence[Any], width: int = 1, dtype: str = "<f4") -> dict[str, int]:
         """Puts items of `width` numbers into the binary chunk."""
         data = np.ascontiguousarray(np.asarray(values, dtype=dtype).reshape(-1))
-        return self.bytes(memoryview(data).cast("B"), len(data) // width)
+        return self.bytes(data.view(np.uint8).data, len(data) // width)
 
     def indices(self, values: np.ndarray | Sequence[Any], width: int = 1) -> dict[str, int]:
         """Puts unsigned integers into the binary chunk."""

@@ -173,6 +173,22 @@ def read_topology(walk: Walk, schema: UsdGeom.Mesh) -> Topology | None:
     return Topology(positions, faces, corners, order)
 
 
+def area(walk: Walk, prim: Usd.Prim, to_stage: np.ndarray) -> float:
+    """Area of the faces of a mesh, not subdivided, in units of the stage; `to_stage` holds the images of X, Y, Z."""
+    topology = read_topology(walk, UsdGeom.Mesh(prim)) if prim.IsA(UsdGeom.Mesh) else None
+    if topology is None:
+        return 0.0
+    corners = topology.positions[topology.corners] @ to_stage
+    ends = np.cumsum(topology.faces)
+    starts = np.repeat(ends - topology.faces, topology.faces)
+    after = np.arange(len(corners)) + 1
+    after[ends[topology.faces > 0] - 1] = (ends - topology.faces)[topology.faces > 0]
+    crosses = np.cross(corners - corners[starts], corners[after] - corners[starts])
+    face = np.repeat(np.arange(len(topology.faces)), topology.faces)
+    sums = np.stack([np.bincount(face, crosses[:, axis], len(topology.faces)) for axis in range(3)], axis=1)
+    return float(np.linalg.norm(sums, axis=1).sum() / 2)
+
+
 def reversed_corners(faces: np.ndarray) -> np.ndarray:
     """Indices of all corners, with those of each face in reverse order."""
     ends = np.cumsum(faces)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -55,7 +56,7 @@ def resolve(layers: Iterable[Any], report: Report) -> list[Any]:
         return type(item)(made[path].identifier, item.primPath, item.layerOffset)
 
     for layer in layers:
-        layer.Traverse(Sdf.Path.absoluteRootPath, lambda path: visit(layer, path))
+        layer.Traverse(Sdf.Path.absoluteRootPath, partial(visit, layer))
     return list(made.values())
 
 
@@ -65,7 +66,7 @@ def is_materialx(item: Any) -> bool:
 
 
 def converted(path: str, place: Any, report: Report) -> Any:
-    """A layer with the materials of a file at UsdMtlx's paths, /MaterialX/Materials; an empty one if it cannot be read."""
+    """A layer with the materials of a file at UsdMtlx's paths, /MaterialX/Materials; none if it cannot be read."""
     layer = Sdf.Layer.CreateAnonymous(f"{Path(path).name}.usda")
     stage = Usd.Stage.Open(layer)
     stage.SetDefaultPrim(stage.DefinePrim("/MaterialX"))

@@ -120,9 +120,8 @@ def unit(stage: Usd.Stage, report: Report) -> float:
         other = layer.pseudoRoot.GetInfo(UsdGeom.Tokens.metersPerUnit)
         if layer.pseudoRoot.HasInfo(UsdGeom.Tokens.metersPerUnit) and not math.isclose(other, metres, rel_tol=1e-6):
             name = Path(layer.realPath or layer.identifier).name
-            report.approximate(
-                None, f"{name} is made in units of {other:g} m, the scene in {metres:g} m; USD does not rescale"
-            )
+            message = f"made in units of {other:g} m, the scene in {metres:g} m; USD does not rescale"
+            report.approximate(name, message)
     return metres
 
 
