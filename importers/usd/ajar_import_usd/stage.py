@@ -147,7 +147,8 @@ def bake_skins(stage: Usd.Stage, time: Usd.TimeCode) -> None:
             if prim.IsInstance():
                 prim.SetInstanceable(False)
     for prim in stage.Traverse():
-        if prim.IsA(UsdGeom.PointBased) and prim.HasAPI(UsdSkel.BindingAPI):
+        # Many files do not say that the schema is applied.
+        if prim.IsA(UsdGeom.PointBased) and UsdSkel.BindingAPI(prim).GetJointIndicesPrimvar().HasValue():
             move_normals(prim, time)
     value = time.GetValue() if time.IsNumeric() else 0.0
     UsdSkel.BakeSkinning(Usd.PrimRange(stage.GetPseudoRoot()), Gf.Interval(value, value))
@@ -160,4 +161,4 @@ def move_normals(prim: Usd.Prim, time: Usd.TimeCode) -> None:
         shape = UsdGeom.PointBased(prim)
         shape.CreateNormalsAttr(primvar.ComputeFlattened(time))
         shape.SetNormalsInterpolation(primvar.GetInterpolation())
-        UsdGeom.PrimvarsAPI(prim).BlockPrimvar("normals")
+        primvar.GetAttr().Block()
