@@ -33,10 +33,10 @@ def SkelRoot "Body" {{
         uniform token subdivisionScheme = "none"
         {normals}
         rel skel:skeleton = </Body/Bones>
-        int[] primvars:skel:jointIndices = [0] (elementSize = 1
-            interpolation = "constant")
-        float[] primvars:skel:jointWeights = [1] (elementSize = 1
-            interpolation = "constant")
+        int[] primvars:skel:jointIndices = [0, 0, 0, 0] (elementSize = 1
+            interpolation = "vertex")
+        float[] primvars:skel:jointWeights = [1, 1, 1, 1] (elementSize = 1
+            interpolation = "vertex")
     }}
 }}
 "#
