@@ -26,8 +26,10 @@ struct Look {
 const RINGS: u32 = 12;
 const SECTORS: u32 = 24;
 
+type Rows<T, const N: usize> = Vec<[T; N]>;
+
 /// A sphere of radius 1: positions, which are the normals too, texture coordinates from the bottom left, triangles.
-fn sphere() -> (Vec<[f32; 3]>, Vec<[f32; 2]>, Vec<[u32; 3]>) {
+fn sphere() -> (Rows<f32, 3>, Rows<f32, 2>, Rows<u32, 3>) {
     let (mut points, mut uvs, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
     for (i, j) in (0..=RINGS).flat_map(|i| (0..=SECTORS).map(move |j| (i, j))) {
         let [u, v] = [j as f32 / SECTORS as f32, i as f32 / RINGS as f32];

@@ -23,9 +23,7 @@ def load(file: str) -> None:
 
 def frame() -> dict[str, list[float]]:
     """A camera a little above and beside the front that sees all."""
-    corners = [
-        o.matrix_world @ Vector(c) for o in bpy.data.objects if o.type == "MESH" for c in o.bound_box
-    ]
+    corners = [o.matrix_world @ Vector(c) for o in bpy.data.objects if o.type == "MESH" for c in o.bound_box]
     low = Vector(map(min, *corners))
     high = Vector(map(max, *corners))
     centre, radius = (low + high) / 2, (high - low).length / 2
