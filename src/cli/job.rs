@@ -1,14 +1,16 @@
 //! What to render and where to write it: the command line over the scene file over the defaults.
 
+use std::collections::BTreeMap;
+
 use ajar_integrators::{Integrator, Settings, Window, integrators, stop::StopRules};
-use ajar_output::ToneMap;
+use ajar_output::{ToneMap, frame_path};
 use ajar_scene::{Cause, Diagnostic, OutputSettings, RenderSettings};
 
-use super::{metropolis::metropolis, render::Args};
+use super::{frames, metropolis::metropolis, render::Args};
 use crate::{
     checkpoint::Saved,
     image::{Aov, Destination, Form},
-    session::{self, DEFAULT_SIZE, Loaded},
+    session::{self, Loaded},
     shard::Shard,
 };
 
@@ -40,7 +42,7 @@ impl Job {
         let (render, output) = (&loaded.file.render, &loaded.file.output);
         let name = args.integrator.as_deref().or(render.integrator.as_deref()).unwrap_or("ajar");
         let integrator = find_integrator(name)?;
-        let size = args.size.or(render.size).unwrap_or(DEFAULT_SIZE);
+        let size = session::film_size(args.size, &loaded.file, args.camera.as_deref());
         let max_depth = args.max_depth.or(render.max_depth).unwrap_or(DEFAULT_DEPTH) as usize;
         if max_depth > integrator.max_depth() {
             let most = integrator.max_depth();
@@ -151,7 +153,16 @@ fn destination(args: &Args, output: &OutputSettings) -> Result<Destination, Diag
         path: named.or_else(|| output.path.clone()),
         ..output.clone()
     };
-    let (exr, png) = session::output_paths(&args.input.file, &merged);
+    let (mut exr, mut png) = session::output_paths(&args.input.file, &merged);
+    if let (Some(_), Some(frame)) = (&args.frames, args.input.frame()) {
+        if merged.path.is_none() {
+            exr = frames::default_template(&exr);
+            png = exr.with_extension("png");
+        }
+        (exr, png) = (frames::place(&exr, frame)?, frames::place(&png, frame)?);
+    } else if let Some(frame) = args.input.frame() {
+        [exr, png] = [exr, png].map(|path| frame_path(&path, frame).unwrap_or(path));
+    }
     let tone_map = args.tone_map.as_deref().or(output.tone_map.as_deref()).unwrap_or("agx");
     let names = args.aov.clone().or_else(|| output.aov.clone()).unwrap_or_default();
     let form = Form {
