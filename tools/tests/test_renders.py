@@ -1,7 +1,6 @@
 """The comparison on real renders: other seeds and integrators are twins, changed scenes are mutants."""
 
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -72,13 +71,10 @@ def test_mutants_fail(change: str, reference: Path, tmp_path: Path) -> None:
 
 
 def test_ajar_diff_hands_over(reference: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    binary = os.environ["AJAR_BIN"]
-    if not shutil.which("ajar-compare", path=str(Path(sys.executable).parent)):
-        pytest.skip("ajar-compare is not installed in this environment")
-    monkeypatch.setenv("PATH", str(Path(sys.executable).parent))
-    for new, code in ((reference, 0), (tmp_path / "missing.exr", 2)):
-        assert subprocess.run([binary, "diff", new, reference, "-q"], timeout=60).returncode == code
-    monkeypatch.setenv("PATH", str(tmp_path))
-    done = subprocess.run([binary, "diff", reference, reference], capture_output=True, text=True, timeout=60)
-    assert done.returncode == 2
-    assert "pip install ./tools" in done.stderr
+    monkeypatch.setenv("AJAR_DIFF_PYTHON", sys.executable)
+    brighter = render(tmp_path / "new.exr", "--seed", "3", "--set", "camera.main.exposure=0.1")
+    report = tmp_path / "report.html"
+    for new, code in ((reference, 0), (brighter, 1), (tmp_path / "missing.exr", 2)):
+        command = [os.environ["AJAR_BIN"], "diff", new, reference, "--html", report]
+        assert subprocess.run(command, timeout=60).returncode == code
+    assert f"ajar diff {brighter}" in report.read_text("utf-8")

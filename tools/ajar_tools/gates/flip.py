@@ -14,6 +14,7 @@ import numpy as np
 from ajar_tools.flip import exposures_for, hdr_flip
 from ajar_tools.picture import Picture
 from ajar_tools.settings import Settings
+from ajar_tools.statistics import block_means
 from ajar_tools.verdict import GateResult, Status
 
 MOST_PIXELS = 300_000
@@ -77,7 +78,6 @@ def shrunk(color: np.ndarray, factor: int) -> np.ndarray:
     if color.shape[2] == 1:
         color = np.repeat(color, 3, axis=2)
     if factor > 1:
-        rows, columns = color.shape[0] // factor, color.shape[1] // factor
-        cut = color[: rows * factor, : columns * factor]
-        color = cut.reshape(rows, factor, columns, factor, 3).mean((1, 3))
+        height, width = (extent - extent % factor for extent in color.shape[:2])
+        color = block_means(color[:height, :width], factor)
     return np.ascontiguousarray(np.maximum(color, 0), np.float32)
