@@ -55,7 +55,8 @@ impl Environment {
     }
 
     fn hint(&self) -> String {
-        let mut names: Vec<_> = self.packages.iter().filter_map(|package| package.split("==").next()).collect();
+        let mut names: Vec<_> =
+            self.packages.iter().filter_map(|package| package.split("==").next()).collect();
         names.dedup();
         format!("{} may name a Python that has {}", self.variable, names.join(", "))
     }
@@ -71,8 +72,7 @@ impl Environment {
         // Left only by a failure, or where another process was first.
         let _ = fs::remove_dir_all(&begun);
         made.map_err(|why| {
-            let message =
-                format!("the Python environment that {} need cannot be made: {why}", self.purpose);
+            let message = format!("the Python environment that {} need cannot be made: {why}", self.purpose);
             Diagnostic::error(message).because(Cause::System).hint(format!(
                 "with a network, run: {}\n    or: {}",
                 self.by_hand(folder),
@@ -93,7 +93,10 @@ impl Environment {
         let (place, python) = (folder.to_string_lossy(), folder.join(PYTHON));
         let python = python.to_string_lossy();
         let (make, fill) = if run(&["uv".into(), "--version".into()]).is_ok() {
-            (vec!["uv", "venv", "--quiet", &place], vec!["uv", "pip", "install", "--quiet", "--python", &python])
+            (
+                vec!["uv", "venv", "--quiet", &place],
+                vec!["uv", "pip", "install", "--quiet", "--python", &python],
+            )
         } else {
             let fill = vec![&*python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
             (vec!["python3", "-m", "venv", &place], fill)
