@@ -74,7 +74,9 @@ def test_changed_picture_fails_with_words_report_and_junit(project: pytest.Pytes
     write_scene(project.path, "door", seed=2, scale=1.05)
     result = run(project, "--junitxml=junit.xml")
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*DIFFERENT PICTURE*", "*statistics FAIL *brighter*", "*report.html*", "*--ajar-update*"])
+    result.stdout.fnmatch_lines(
+        ["*DIFFERENT PICTURE*", "*statistics FAIL *brighter*", "*report.html*", "*--ajar-update*"]
+    )
     assert "Traceback" not in result.stdout.str()
     failure = ElementTree.parse(project.path / "junit.xml").find(".//failure")
     assert failure is not None
