@@ -19,6 +19,8 @@ pub struct Environment {
     pub variable: &'static str,
     /// What is installed, as `pip` takes it.
     pub packages: &'static [&'static str],
+    /// The versions of Python that they are there for.
+    pub versions: &'static str,
     /// The environment's name in the cache. It has to change whenever the packages do.
     pub name: &'static str,
 }
@@ -30,7 +32,13 @@ impl Environment {
     /// There is none and none can be made.
     pub fn python(&self) -> Result<PathBuf, Diagnostic> {
         if let Some(python) = named(self.variable) {
-            return Ok(python);
+            // A name without folder is looked for on the search path.
+            return if python.components().count() > 1 && !python.exists() {
+                let message = format!("{} names {}, which is not there", self.variable, python.display());
+                Err(Diagnostic::error(message).because(Cause::System))
+            } else {
+                Ok(python)
+            };
         }
         let folder = self.cache()?.join("ajar").join(self.name);
         let python = folder.join(PYTHON);
@@ -65,16 +73,22 @@ impl Environment {
     fn make(&self, folder: &Path) -> Result<(), Diagnostic> {
         let begun = folder.with_extension(format!("part-{}", process::id()));
         let build = self.commands(&begun).iter().try_for_each(|words| run(words));
-        let made = build.and_then(|()| match fs::rename(&begun, folder) {
-            Err(error) if !folder.join(PYTHON).exists() => Err(format!("{}: {error}", folder.display())),
-            _ => Ok(()),
+        let made = build.and_then(|()| {
+            // What is there without a Python is broken.
+            let broken = folder.exists() && !folder.join(PYTHON).exists();
+            let cleared = if broken { fs::remove_dir_all(folder) } else { Ok(()) };
+            match cleared.and_then(|()| fs::rename(&begun, folder)) {
+                Err(error) if !folder.join(PYTHON).exists() => Err(format!("{}: {error}", folder.display())),
+                _ => Ok(()),
+            }
         });
         // Left only by a failure, or where another process was first.
         let _ = fs::remove_dir_all(&begun);
         made.map_err(|why| {
             let message = format!("the Python environment that {} need cannot be made: {why}", self.purpose);
             Diagnostic::error(message).because(Cause::System).hint(format!(
-                "with a network, run: {}\n    or: {}",
+                "with a network and Python {}, run: {}\n    or: {}",
+                self.versions,
                 self.by_hand(folder),
                 self.hint()
             ))

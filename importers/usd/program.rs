@@ -42,6 +42,7 @@ pub(super) const PROGRAM: Program = Program {
         purpose: "USD files",
         variable: "AJAR_USD_PYTHON",
         packages: &["usd-core==26.11", "materialx==1.39.5", "numpy==2.4.6"],
+        versions: "3.11 to 3.14",
         name: "usd-26.11-materialx-1.39.5",
     },
 };

@@ -15,7 +15,9 @@ fn run(bench: &Bench, variables: &[(&str, &str)]) -> Run {
 #[test]
 fn a_python_that_is_not_there_is_named() {
     let bench = Bench::new();
-    run(&bench, &[("AJAR_DIFF_PYTHON", "/nowhere/python")]).exits(2).says(&["/nowhere/python cannot be run"]);
+    run(&bench, &[("AJAR_DIFF_PYTHON", "/nowhere/python")])
+        .exits(2)
+        .says(&["AJAR_DIFF_PYTHON names /nowhere/python, which is not there"]);
 }
 
 #[test]

@@ -15,3 +15,5 @@ mod resume;
 mod set;
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod usd_environment;

@@ -21,8 +21,8 @@ import twins
 PAGE = Path(__file__).parents[2] / "docs" / "compare-proof.md"
 HEAD = """# What the comparison finds
 
-Made by `.venv/bin/python tools/proof` from a release build, on {date}. Renders have 48×32 pixels and 16 rounds,
-references four times as many.
+Made by `.venv/bin/python tools/proof` from a release build, on {date}. Renders have 48×32 pixels, 16 rounds
+and paths of up to 6 edges, references four times as many rounds.
 """
 RULES = """
 ## Mutants that must fail

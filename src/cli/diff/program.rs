@@ -47,6 +47,7 @@ pub(super) const PROGRAM: Program = Program {
             "numpy==2.2.6; python_version < '3.11'",
             "tomli==2.5.0; python_version < '3.11'",
         ],
+        versions: "3.10 to 3.14",
         name: "diff-openimageio-3.2.2",
     },
 };
