@@ -7,7 +7,7 @@ use ajar_scene::{Choice, Diagnostic, Moment, SceneFile, Severity};
 use super::arguments::{parse_bytes, parse_fps, parse_number};
 use crate::session::{self, LoadOptions, Loaded};
 
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub(super) struct Input {
     /// scene.toml, or any file that `ajar formats` lists
     pub file: PathBuf,
@@ -27,7 +27,7 @@ pub(super) struct Input {
     chosen: Chosen,
 }
 
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 struct Chosen {
     /// Show this variant of the asset; may be given several times
     #[arg(long, value_name = "NAME")]
@@ -66,6 +66,18 @@ impl Input {
     fn options<'a>(&'a self, size: Option<[u32; 2]>, choice: &'a Choice) -> LoadOptions<'a> {
         let Self { set, strict, allow, memory_limit, .. } = self;
         LoadOptions { size, set, strict: *strict, allow, memory_limit: *memory_limit, choice }
+    }
+
+    /// The same at a frame.
+    pub fn at_frame(&self, frame: i32) -> Self {
+        let chosen = Chosen { frame: Some(frame.into()), ..self.chosen.clone() };
+        Self { chosen, ..self.clone() }
+    }
+
+    /// The frame asked for, if it is a whole one.
+    pub fn frame(&self) -> Option<i32> {
+        let frame = self.chosen.frame?;
+        (frame.fract() == 0.0 && frame.abs() <= f64::from(i32::MAX)).then_some(frame as i32)
     }
 
     /// The least severity that makes a file unfit.

@@ -14,6 +14,7 @@ use super::{
     Exit,
     arguments::{parse_bounds, parse_crop, parse_size},
     checkpoints::Checkpoints,
+    frames::{self, Frames, parse_frames},
     input::Input,
     job::Job,
     log::Format,
@@ -28,11 +29,15 @@ use crate::{
     session::{self, Loaded, Start, Status},
 };
 
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub(super) struct Args {
     #[command(flatten)]
     pub input: Input,
+    /// Render these frames, one after the other: 1:10x2,15. Their number takes the place of #### or %04d in OUT.exr
+    #[arg(long, value_name = "FRAMES", value_parser = parse_frames, allow_hyphen_values = true,
+          conflicts_with_all = ["frame", "at", "checkpoint", "resume", "shard"])]
+    pub frames: Option<Frames>,
     /// Image to write; a PNG preview goes beside it [default: <name>.exr in the current folder]
     #[arg(short, long, value_name = "OUT.exr")]
     pub output: Option<PathBuf>,
@@ -125,6 +130,22 @@ fn execute(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
         pool.map_err(|e| fail(Cause::Resource, format!("cannot start {threads} threads: {e}")))?;
     }
     let signals = Signals::new().map_err(|e| fail(Cause::System, format!("cannot handle signals: {e}")))?;
+    let Some(Frames(frames)) = &args.frames else { return image(args, log, &signals) };
+    for &frame in frames {
+        let mut one = Args { input: args.input.at_frame(frame), ..args.clone() };
+        if let Some(stats) = &args.stats_json {
+            one.stats_json = Some(frames::place(stats, frame).map_err(|d| vec![d])?);
+        }
+        match image(&one, log, &signals)? {
+            Exit::Ok => {}
+            other => return Ok(other),
+        }
+    }
+    Ok(Exit::Ok)
+}
+
+/// Renders one image.
+fn image(args: &Args, log: Format, signals: &Signals) -> Result<Exit, Vec<Diagnostic>> {
     let (ready, done) = Ready::new(args, log)?;
     if args.dry_run {
         print(&ready.job.describe());
