@@ -9,6 +9,7 @@ mod guard;
 pub mod obj;
 pub mod plugin;
 mod polygon;
+pub mod python;
 mod report;
 pub mod usd;
 

@@ -236,6 +236,7 @@ fn metadata(run: &Run<'_>) -> Metadata {
         rounds: status.rounds.min(u32::MAX.into()) as u32,
         integrator: run.integrator.into(),
         scene_hash: run.scene_hash.into(),
+        mutations_per_sample: run.report.number("mutations_per_sample"),
         noise: status.noise.map(|n| n.typical),
         complete: run.complete,
         shard: (!run.shard.is_whole()).then_some((run.shard.index, run.shard.count)),

@@ -1,16 +1,14 @@
 //! USD, through a program in Python on Pixar's usd-core that speaks the protocol of plug-ins.
 //!
-//! Ajar carries the program (`ajar_import_usd`) with it; [`environment`] finds or makes the Python that runs it.
+//! Ajar carries the program (`ajar_import_usd`) with it; [`crate::python`] runs it.
 
-mod environment;
-mod modules;
+mod program;
 
-use std::{fs::File, process::Command};
+use std::fs::File;
 
 use ajar_scene::{Diagnostic, Feature, ImportRequest, Imported, Importer};
-use serde_json::{Map, Value};
 
-use self::modules::{LOADER, MODULES};
+use self::program::PROGRAM;
 use crate::plugin;
 
 /// The importer of `.usd`, `.usda`, `.usdc` and `.usdz` files.
@@ -80,10 +78,7 @@ impl Importer for Usd {
         // The file is looked at before an environment is made for it.
         let unreadable = |e| Diagnostic::error(format!("cannot be read: {e}")).in_file(&request.path);
         File::open(&request.path).map_err(unreadable)?;
-        let mut command = Command::new(environment::python()?);
-        command.args(["-c", LOADER]);
-        let texts: Map<String, Value> =
-            MODULES.iter().map(|&(name, text)| (name.to_owned(), text.into())).collect();
-        plugin::run("the USD importer", command, Value::Object(texts).to_string().into_bytes(), request)
+        let (command, input) = PROGRAM.command()?;
+        plugin::run(PROGRAM.name, command, input, request)
     }
 }

@@ -161,6 +161,13 @@ pub struct Report {
     pub numbers: Vec<(String, f64)>,
 }
 
+impl Report {
+    /// The number of this name.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.numbers.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
+    }
+}
+
 /// All integrators.
 pub fn integrators() -> &'static [&'static dyn Integrator] {
     &[&Ajar { always: false }, &PathTracer, &Bdpt, &Mlt]

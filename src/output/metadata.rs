@@ -39,6 +39,8 @@ pub struct Metadata {
     pub integrator: String,
     /// Hash of the scene that was rendered.
     pub scene_hash: String,
+    /// Mutations for each sample, where chains work beside samples.
+    pub mutations_per_sample: Option<f64>,
     /// Estimated relative error, if it could be estimated.
     pub noise: Option<f64>,
     /// Whether the stop rule was reached; `false` for snapshots and interrupted renders.
@@ -79,6 +81,7 @@ impl Metadata {
             ("ajar:sceneHash", Text(text(&self.scene_hash))),
             ("ajar:complete", I32(self.complete.into())),
         ];
+        custom.extend(self.mutations_per_sample.map(|n| ("ajar:mutationsPerSample", F32(n as f32))));
         custom.extend(self.noise.map(|noise| ("ajar:noise", F32(noise as f32))));
         custom.extend(self.shard.map(|(i, n)| ("ajar:shard", Text(text(&format!("{i}/{n}"))))));
         custom

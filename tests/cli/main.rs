@@ -5,6 +5,7 @@
 mod bench;
 mod commands;
 mod convert;
+mod diff;
 mod exits;
 mod images;
 mod messages;

@@ -6,6 +6,7 @@ import argparse
 import json
 import shlex
 import sys
+import traceback
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,13 +16,20 @@ from ajar_tools.junit import annotation, junit
 from ajar_tools.settings import Settings, SettingsError, load
 from ajar_tools.verdict import Outcome, Verdict
 
+DESCRIPTION = "Say whether two OpenEXR files show the same picture, but for noise."
 EPILOG = """Exit codes: 0 the same picture, 1 a different one, 2 they cannot be compared (missing, damaged or unsuitable
 files, wrong usage). The gates and their limits: docs/compare.md."""
 
 
+def program() -> str:
+    """What the user called."""
+    name = Path(sys.argv[0]).name
+    return name if name in ("ajar-compare", "ajar diff") else "ajar-compare"
+
+
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    p = argparse.ArgumentParser(prog="ajar-compare", description=__doc__, epilog=EPILOG)
+    p = argparse.ArgumentParser(prog=program(), description=DESCRIPTION, epilog=EPILOG)
     p.add_argument("new", metavar="NEW", help="the image to judge, OpenEXR")
     p.add_argument("reference", metavar="REFERENCE", help="the image that is right")
     p.add_argument("--config", type=Path, metavar="compare.toml", help="other limits than the default ones")
@@ -37,27 +45,44 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns the exit code. Wrong usage exits with 2, as argparse does."""
-    arguments = sys.argv[1:] if arguments is None else list(arguments)
+    try:
+        return run(sys.argv[1:] if arguments is None else list(arguments))
+    except Exception:  # Python would end with 1, which is a verdict here.
+        traceback.print_exc()
+        return Outcome.CANNOT.value
+
+
+def run(arguments: list[str]) -> int:
+    """Compares as the arguments say."""
     options = parser().parse_args(arguments)
     try:
-        settings = load(options.config)
+        settings = with_flags(load(options.config), options)
+        verdict = compare(options.new, options.reference, settings)
+        tell(options, verdict)
+        write(options, settings, verdict, f"{program()} {shlex.join(arguments)}")
     except SettingsError as error:
-        print(f"CANNOT COMPARE: {error}", file=sys.stderr)
-        return Outcome.CANNOT.value
-    settings = with_flags(settings, options)
-    verdict = compare(options.new, options.reference, settings)
+        return refuse(str(error))
+    except MemoryError:
+        return refuse("there is not enough memory")
+    except OSError as error:
+        return refuse(f"{error.filename} cannot be written: {error.strerror}")
+    return verdict.outcome.value
+
+
+def refuse(problem: str) -> int:
+    """Says why there is no verdict."""
+    print(f"CANNOT COMPARE: {problem}", file=sys.stderr)
+    return Outcome.CANNOT.value
+
+
+def tell(options: argparse.Namespace, verdict: Verdict) -> None:
+    """Prints the verdict."""
     if verdict.outcome is Outcome.CANNOT:
         print(verdict.headline(), file=sys.stderr)
     elif not (options.quiet and verdict.outcome is Outcome.PASS) and str(options.json) != "-":
         print(verdict.text())
     if options.github and verdict.outcome is not Outcome.PASS:
         print(annotation(Path(options.reference), verdict.headline()))
-    try:
-        write(options, settings, verdict, "ajar-compare " + shlex.join(arguments))
-    except OSError as error:
-        print(f"CANNOT COMPARE: {error.filename} cannot be written: {error.strerror}", file=sys.stderr)
-        return Outcome.CANNOT.value
-    return verdict.outcome.value
 
 
 def with_flags(settings: Settings, options: argparse.Namespace) -> Settings:

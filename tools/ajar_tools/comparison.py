@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from ajar_tools.gates import exact, finite, flip, numbers, statistical, structure, variance
@@ -16,7 +17,9 @@ ENDING = ("structure", "finite")
 def compare(new: str | Path, reference: str | Path, settings: Settings | None = None) -> Verdict:
     """Whether the image `new` shows what `reference` shows. Never raises for what files hold."""
     try:
-        return compare_pictures(read(new), read(reference), settings or Settings())
+        with ThreadPoolExecutor() as pool:
+            ours, theirs = pool.map(read, (new, reference))
+        return compare_pictures(ours, theirs, settings or Settings())
     except CannotCompareError as error:
         return Verdict(Outcome.CANNOT, str(new), str(reference), problem=str(error))
 

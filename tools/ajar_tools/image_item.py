@@ -56,15 +56,15 @@ class ImageItem(pytest.Item):
                 f"{self.case.name} has no reference image. Make one, look at it, and commit it:\n"
                 f"    {self.update_command()}"
             )
-        verdict = compare(new, self.case.reference, self.settings)
+        verdict = compare(shown(new), shown(self.case.reference), self.settings)
         if self.config.getoption("--ajar-exact"):
             require_exact(verdict)
         folder = self.artifacts.keep(self.case.name, verdict, self.settings, self.command(new))
         if verdict.outcome is Outcome.PASS:
             return
         report = folder / "report.html"
-        lines = [verdict.text(), f"new image: {new}"]
-        lines += [f"report:    {report}"] if report.exists() else []
+        lines = [verdict.text(), f"new image: {shown(new)}"]
+        lines += [f"report:    {shown(report)}"] if report.exists() else []
         lines += ["if the change is meant, review and commit the new reference:", f"    {self.update_command()}"]
         self.fail("\n".join(lines), verdict.headline())
 
@@ -77,7 +77,7 @@ class ImageItem(pytest.Item):
         old = folder / "old.exr"
         if reference.exists():
             shutil.copyfile(reference, old)
-            verdict = compare(new, old, self.settings)
+            verdict = compare(shown(new), shown(old), self.settings)
             if verdict.gates and verdict.gates[-1].gate == "exact":
                 verdict.gates[-1].message += "; the reference was kept"
                 self.artifacts.keep(self.case.name, verdict, self.settings, self.command(new))
@@ -96,7 +96,7 @@ class ImageItem(pytest.Item):
 
     def command(self, new: Path) -> str:
         """What a person types to see the same verdict."""
-        command = ["ajar-compare", str(new), shown(self.case.reference)]
+        command = ["ajar-compare", shown(new), shown(self.case.reference)]
         if (self.case.folder / CONFIG).exists():
             command += ["--config", shown(self.case.folder / CONFIG)]
         return shlex.join([*command, "--alpha", f"{self.settings.alpha:.3g}"])

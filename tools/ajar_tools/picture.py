@@ -6,6 +6,7 @@ clipped or filled in.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -55,14 +56,11 @@ class Picture:
         """One channel, rows × columns."""
         return self.pixels[..., self.channels.index(channel)]
 
-    @property
+    @functools.cached_property
     def color(self) -> np.ndarray:
-        """R, G and B; a grey image (Y) counts as three equal ones."""
-        names = self.color_channels
-        indices = [self.channels.index(name) for name in names]
-        if indices == list(range(indices[0], indices[0] + len(indices))):
-            return self.pixels[..., indices[0] : indices[-1] + 1]
-        return self.pixels[..., indices]
+        """R, G and B, or Y."""
+        indices = [self.channels.index(name) for name in self.color_channels]
+        return np.take(self.pixels, indices, axis=2)
 
     @property
     def color_channels(self) -> list[str]:

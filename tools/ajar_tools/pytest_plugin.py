@@ -8,6 +8,7 @@ fixtures `ajar_render` and `ajar_compare` do the same for tests written in Pytho
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -84,6 +85,9 @@ class CaseFile(pytest.File):
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Divides the suite's probability of a false alarm by its cases (Bonferroni)."""
     cases = [item for item in items if isinstance(item, ImageItem)]
+    for name, count in Counter(item.case.name for item in cases).items():
+        if count > 1:
+            raise pytest.UsageError(f"{count} cases are called {name}, and each needs a folder of artifacts of its own")
     for item in cases:
         item.prepare(artifacts_of(config), config.getoption("--ajar-alpha") / len(cases))
 
@@ -140,7 +144,8 @@ def ajar_compare(request: pytest.FixtureRequest) -> Callable[..., Verdict]:
         settings = replace(Settings(), **limits)  # type: ignore[arg-type]
         verdict = compare(new, reference, settings)
         if verdict.outcome is not Outcome.PASS:
-            name = "".join(c if c.isalnum() or c in "-_" else "-" for c in request.node.name)
+            test = f"{request.path.stem}-{request.node.name}"
+            name = "".join(c if c.isalnum() or c in "-_" else "-" for c in test)
             folder = artifacts_of(request.config).keep(name, verdict, settings, f"ajar-compare {new} {reference}")
             request.node.user_properties.append(("ajar", verdict.headline()))
             pytest.fail(str(CaseFailedError(f"{verdict.text()}\nmore in {folder}")), pytrace=False)

@@ -6,6 +6,7 @@ An image that is the mean of n independent renders (rounds) stores the estimated
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -55,14 +56,31 @@ def grid(size: tuple[int, int], side: int) -> tuple[int, int]:
 
 def block_means(pixels: np.ndarray, side: int) -> np.ndarray:
     """Means of the blocks of `pixels` (rows × columns × channels); blocks at the right and bottom may be smaller."""
-    if side == WHOLE:
-        return np.asarray(pixels.mean((0, 1), dtype=np.float64))[None, None]
-    tops, lefts = np.arange(0, pixels.shape[0], side), np.arange(0, pixels.shape[1], side)
-    columns = np.add.reduceat(pixels, lefts, axis=1, dtype=np.float64)
-    sums = np.add.reduceat(columns, tops, axis=0)
-    heights = np.diff(np.append(tops, pixels.shape[0]))
-    widths = np.diff(np.append(lefts, pixels.shape[1]))
-    return np.asarray(sums / (heights[:, None, None] * widths[None, :, None]))
+    height, width, channels = pixels.shape
+    side = side or max(height, width)
+    # First down: whole rows are added, which is ten times faster than squares, in pieces that caches hold.
+    flat = np.ascontiguousarray(pixels).reshape(height, width * channels)
+    whole = height - height % side
+    sums = flat[:whole].reshape(-1, side, width * channels).sum(axis=1, dtype=np.float64)
+    if whole < height:
+        sums = np.concatenate([sums, flat[whole:].sum(axis=0, dtype=np.float64)[None]])
+    lefts = np.arange(0, width, side)
+    sums = np.add.reduceat(sums.reshape(-1, width, channels), lefts, axis=1)
+    return np.asarray(sums / block_sizes((width, height), side)[..., None])
+
+
+def block_sizes(size: tuple[int, int], side: int) -> np.ndarray:
+    """Pixels in each block of an image of `size` (width, height): block rows × block columns."""
+    width, height = size
+    side = side or max(size)
+    heights = np.minimum(side, height - np.arange(0, height, side))
+    widths = np.minimum(side, width - np.arange(0, width, side))
+    return heights[:, None] * widths[None, :]
+
+
+def over_channels(combine: np.ufunc, pixels: np.ndarray) -> np.ndarray:
+    """`combine.reduce(pixels, axis=2)`, several times faster for the few channels of an image."""
+    return np.asarray(functools.reduce(combine, np.moveaxis(pixels, 2, 0)))
 
 
 def from_rounds(rounds: np.ndarray) -> BlockStatistics:

@@ -11,6 +11,10 @@ if TYPE_CHECKING:
     from ajar_tools.picture import Picture
 
 
+# The gates whose pass says that the pictures are the same, the first that passes.
+DECISIVE = ("exact", "statistics", "flip")
+
+
 class Outcome(Enum):
     """Of a gate or a comparison; the value of a comparison's is its exit code."""
 
@@ -61,17 +65,31 @@ class Verdict:
         """The gates that failed."""
         return [gate for gate in self.gates if gate.status is Status.FAIL]
 
-    def headline(self) -> str:
-        """One sentence."""
+    @property
+    def reason(self) -> str:
+        """What decided, in words."""
         if self.outcome is Outcome.CANNOT:
-            return f"CANNOT COMPARE: {self.problem}"
+            return self.problem
+        if self.outcome is Outcome.FAIL:
+            return "; ".join(gate.message for gate in self.failures)
+        judges = [gate.message for gate in self.gates if gate.status is Status.PASS and gate.gate in DECISIVE]
+        return judges[0] if judges else "nothing that was asked differs"
+
+    def title(self) -> str:
+        """The verdict about which files."""
+        if self.outcome is Outcome.CANNOT:
+            return "CANNOT COMPARE"
         if self.outcome is Outcome.PASS:
             return f"SAME PICTURE: {self.new} agrees with {self.reference}"
-        return f"DIFFERENT PICTURE: {self.new} is not {self.reference}: {self.failures[0].message}"
+        return f"DIFFERENT PICTURE: {self.new} is not {self.reference}"
+
+    def headline(self) -> str:
+        """One sentence with the reason of what is not a pass."""
+        return self.title() if self.outcome is Outcome.PASS else f"{self.title()}: {self.reason}"
 
     def text(self) -> str:
-        """The headline and a line a gate."""
-        lines = [self.headline()]
+        """The title and a line a gate."""
+        lines = [self.title() if self.gates else self.headline()]
         lines += [f"  {i}. {g.gate:<10} {g.status.value:<6}  {g.message}" for i, g in enumerate(self.gates, 1)]
         lines += [f"  excused: {line}" for line in self.exceptions]
         return "\n".join(lines)
@@ -86,6 +104,7 @@ class Verdict:
             "outcome": self.outcome.name.lower(),
             "exit_code": self.outcome.value,
             "headline": self.headline(),
+            "reason": self.reason,
             "new": self.new,
             "reference": self.reference,
             "problem": self.problem,

@@ -52,12 +52,37 @@ def shown(page: Any) -> str:
 
 
 def test_verdict_gates_and_command_are_there(page: Any) -> None:
-    assert page.inner_text("#word") == "DIFFERENT PICTURE"
+    assert page.inner_text("#word") == "Different picture"
     assert "brighter in G" in page.inner_text("#reason")
     assert page.locator("#gates tbody tr").count() == 7
     assert page.locator("#gates td.fail").count() >= 1
     assert page.inner_text("#command") == "ajar-compare new.exr reference.exr"
     assert page.problems == []
+
+
+def test_both_images_are_told_apart_by_what_they_are(page: Any) -> None:
+    rows = page.locator("#about tbody tr").all_inner_texts()
+    assert "rounds\t16\t64" in rows
+    assert "seed\t2\t1" in rows
+
+
+def test_thumbs_show_all_modes_at_once(page: Any) -> None:
+    sums = page.evaluate(
+        """() => [...document.querySelectorAll("#modes canvas")].map((c) =>
+            c.getContext("2d").getImageData(0, 0, c.width, c.height).data.reduce((sum, v) => sum + v, 0))"""
+    )
+    assert len(sums) == 7
+    assert sums[0] == sums[2]
+    assert len(set(sums)) == 6
+
+
+def test_b_blinks(page: Any) -> None:
+    page.keyboard.press("b")
+    page.wait_for_selector("#canvas[data-shown=reference]")
+    assert page.inner_text("#left") == "reference"
+    page.wait_for_selector("#canvas[data-shown=new]")
+    page.keyboard.press("b")
+    assert shown(page) == "new"
 
 
 def test_holding_the_mouse_or_space_swaps(page: Any) -> None:
@@ -98,6 +123,7 @@ def test_wipe_follows_the_pointer(page: Any) -> None:
 def test_maps_are_brightest_at_the_spoiled_block(mode: str, page: Any) -> None:
     page.click(f"button[data-mode={mode}]")
     assert shown(page) == mode
+    assert page.is_visible("#scale")
     colour = (
         """([x, y]) => Array.from(document.getElementById("canvas").getContext("2d").getImageData(x, y, 1, 1).data)"""
     )

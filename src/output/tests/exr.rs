@@ -50,6 +50,7 @@ fn picture() -> Picture {
             rounds: 12,
             integrator: "mlt".into(),
             scene_hash: "5ce2e".into(),
+            mutations_per_sample: Some(3.5),
             noise: Some(0.25),
             complete: true,
             shard: Some((2, 8)),
@@ -122,6 +123,7 @@ fn metadata_is_kept() {
         ("ajar:rounds", AttributeValue::I32(12)),
         ("ajar:integrator", AttributeValue::Text("mlt".into())),
         ("ajar:sceneHash", AttributeValue::Text("5ce2e".into())),
+        ("ajar:mutationsPerSample", AttributeValue::F32(3.5)),
         ("ajar:noise", AttributeValue::F32(0.25)),
         ("ajar:complete", AttributeValue::I32(1)),
         ("ajar:shard", AttributeValue::Text("2/8".into())),
@@ -138,7 +140,7 @@ fn what_is_unknown_is_left_out() {
     let attributes = &image.layer_data[0].attributes;
     assert_eq!(attributes.capture_date, None);
     assert_eq!(attributes.world_to_camera, None);
-    for name in ["ajar:noise", "ajar:shard"] {
+    for name in ["ajar:mutationsPerSample", "ajar:noise", "ajar:shard"] {
         assert!(!attributes.other.contains_key(&Text::from(name)), "{name}");
     }
 }

@@ -6,6 +6,7 @@ import numpy as np
 
 from ajar_tools.picture import Picture
 from ajar_tools.settings import Settings
+from ajar_tools.statistics import over_channels
 from ajar_tools.verdict import GateResult, Status
 
 
@@ -19,7 +20,7 @@ def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
         b = select(reference, common)
     if a.shape == b.shape and np.array_equal(a, b):
         return GateResult("exact", Status.PASS, "all pixels are equal")
-    differing = int((a != b).any(axis=2).sum())
+    differing = int(over_channels(np.logical_or, a != b).sum())
     count = a.shape[0] * a.shape[1]
     message = f"{differing} of {count} pixels are not equal to the last bit"
     return GateResult("exact", Status.REPORT, message, {"differing_pixels": differing, "pixels": count})

@@ -22,11 +22,9 @@ def problem(picture: Picture, settings: Settings) -> str:
     colors = picture.color_channels
     names = colors if settings.other_renderer else picture.channels
     pixels = picture.color if settings.other_renderer else picture.pixels
-    # A sum is finite only if all its terms are, but for overflow; then the slow look decides.
-    if not np.isfinite(pixels.sum(dtype=np.float64)):
-        bad = ~np.isfinite(pixels)
-        if bad.any():
-            return describe(picture, bad, names, "not finite")
+    finite = np.isfinite(pixels)
+    if not finite.all():
+        return describe(picture, ~finite, names, "not finite")
     if float(picture.color.min()) < 0:
         return describe(picture, picture.color < 0, colors, "negative")
     return ""

@@ -11,6 +11,7 @@ import numpy as np
 
 from ajar_tools.picture import Picture
 from ajar_tools.settings import Settings
+from ajar_tools.statistics import over_channels
 from ajar_tools.verdict import GateResult, Status
 
 # What idiff counts: a per cent of pixels beyond each of these.
@@ -42,7 +43,7 @@ def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
 def measures(a: np.ndarray, b: np.ndarray, settings: Settings) -> dict[str, float]:
     """Mean, root mean square and largest error, PSNR, and percentages of pixels beyond thresholds."""
     error = np.abs(a - b)
-    worst = error.max(axis=2)
+    worst = over_channels(np.maximum, error)
     mean_square = float(np.square(error).mean(dtype=np.float64))
     peak = float(b.max())
     psnr = math.inf if mean_square == 0 else 10 * math.log10(max(peak * peak, 1e-300) / mean_square)
@@ -63,7 +64,7 @@ def measures(a: np.ndarray, b: np.ndarray, settings: Settings) -> dict[str, floa
 
 def max_pixel(new: Picture, reference: Picture) -> tuple[int, int]:
     """Column and row of the largest error in the full frame."""
-    worst = np.abs(new.color - reference.color).max(axis=2)
+    worst = over_channels(np.maximum, np.abs(new.color - reference.color))
     row, column = np.unravel_index(int(worst.argmax()), worst.shape)
     return new.data_window.x + int(column), new.data_window.y + int(row)
 

@@ -13,6 +13,7 @@ from statistics import NormalDist
 
 import numpy as np
 
+from ajar_tools.gates.noise import incomparable, unusable
 from ajar_tools.picture import Picture
 from ajar_tools.settings import Settings
 from ajar_tools.statistics import SIDES, WHOLE, BlockStatistics, block_means
@@ -62,8 +63,11 @@ def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
     }
     failing = [f for f in findings if f.p < f.limit]
     if failing:
-        numbers |= {"block": place(failing[-1], new), "relative_difference": failing[-1].relative}
-        return GateResult("statistics", Status.FAIL, " and ".join(describe(f, new) for f in failing[:2]), numbers)
+        # The smallest blocks tell best where, the clearest ones that it is so.
+        smallest, clearest = failing[-1], max(failing, key=lambda f: abs(f.t))
+        numbers |= {"block": place(smallest, new), "relative_difference": smallest.relative}
+        told = [smallest] if clearest is smallest else [smallest, clearest]
+        return GateResult("statistics", Status.FAIL, " and ".join(describe(f, new) for f in told), numbers)
     if scatter and scatter.fails:
         message = f"blocks scatter {scatter.value:.2f} times as much as the noise that the files declare"
         return GateResult("statistics", Status.FAIL, message, numbers)
@@ -71,33 +75,43 @@ def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
     return GateResult("statistics", Status.PASS, f"no block differs by more than noise; {summary(weakest)}", numbers)
 
 
-def unusable(picture: Picture, statistics: BlockStatistics | None, settings: Settings) -> str:
-    """Why an image's statistics cannot be used; empty if they can."""
-    if statistics is None:
-        return f"{picture.path} does not declare its noise (ajar:blockVariance8 and so on)"
-    if statistics.rounds < settings.min_rounds:
-        return f"{picture.path} is the mean of {statistics.rounds} rounds, {settings.min_rounds} are needed"
-    return ""
-
-
 class Level:
-    """Differences of block means of one side in standard errors: `t`, with degrees of `freedom`."""
+    """Differences of block means of one side in standard errors: `t`, with degrees of `freedom`.
+
+    A short render that missed rare bright paths is too dark and knows little of its noise. Where the other one has the
+    same noise, it knows; then the larger counts of the standard errors of Welch and of Student.
+    """
 
     def __init__(
         self, new: Picture, reference: Picture, ours: BlockStatistics, theirs: BlockStatistics, side: int
     ) -> None:
         self.side = side
         a, b = block_means(new.color, side), block_means(reference.color, side)
-        va, vb = ours.variances[side], theirs.variances[side]
+        variance, self.freedom = welch(ours, theirs, side)
+        if not incomparable(new, reference):
+            pooled, freedom = student(ours, theirs, side)
+            self.freedom = np.where(pooled > variance, freedom, self.freedom)
+            variance = np.maximum(pooled, variance)
         rounding = (max(new.rounding(), reference.rounding()) * np.maximum(a, b)) ** 2
         # What the last bits of another processor do to a pixel without noise is no difference.
         floor = rounding + (1e-6 * max(float(a.mean()), float(b.mean()))) ** 2 + 1e-70
-        variance = va + vb + floor
         self.difference = a - b
-        self.t = self.difference / np.sqrt(variance)
-        freedom = (va + vb) ** 2 / np.maximum(va**2 / (ours.rounds - 1) + vb**2 / (theirs.rounds - 1), 1e-300)
-        self.freedom = np.clip(freedom, min(ours.rounds, theirs.rounds) - 1, None)
+        self.t = self.difference / np.sqrt(variance + floor)
         self.relative = self.difference / np.maximum(b, 1e-6 * float(b.mean()) + 1e-35)
+
+
+def welch(ours: BlockStatistics, theirs: BlockStatistics, side: int) -> tuple[np.ndarray, np.ndarray]:
+    """Variances of differences, and degrees of freedom, whatever the noise of each image."""
+    va, vb = ours.variances[side], theirs.variances[side]
+    freedom = (va + vb) ** 2 / np.maximum(va**2 / (ours.rounds - 1) + vb**2 / (theirs.rounds - 1), 1e-300)
+    return va + vb, np.clip(freedom, min(ours.rounds, theirs.rounds) - 1, None)
+
+
+def student(ours: BlockStatistics, theirs: BlockStatistics, side: int) -> tuple[np.ndarray, int]:
+    """The same for images whose rounds have the same noise."""
+    n, m = ours.rounds, theirs.rounds
+    of_round = ((n - 1) * n * ours.variances[side] + (m - 1) * m * theirs.variances[side]) / (n + m - 2)
+    return of_round * (1 / n + 1 / m), n + m - 2
 
 
 def worst(test: Level, alpha: float) -> Finding:

@@ -22,9 +22,16 @@ def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
     problems = list(colour_problems(new, reference) if settings.other_renderer else channel_problems(new, reference))
     problems += metadata_problems(new, reference, settings)
     if problems:
-        return GateResult("structure", Status.FAIL, "; ".join(problems))
+        strangers = not settings.other_renderer and made_by_ajar(new) != made_by_ajar(reference)
+        hint = " (images of two renderers? --other-renderer compares their colours)" if strangers else ""
+        return GateResult("structure", Status.FAIL, "; ".join(problems) + hint)
     names = ", ".join(new.color_channels)
     return GateResult("structure", Status.PASS, f"{new.data_window}, {names} and all else as in the reference")
+
+
+def made_by_ajar(picture: Picture) -> bool:
+    """Whether a file says so."""
+    return "ajar:integrator" in picture.attributes
 
 
 def check_windows(new: Picture, reference: Picture, settings: Settings) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import html
 import json
 import math
-from importlib.resources import files
+import pkgutil
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +21,22 @@ from ajar_tools.verdict import Verdict
 
 # Larger images are averaged for the page, which says so.
 MOST_PIXELS = 2_100_000
-# Standard errors that are shown as the brightest.
-MOST_SIGNIFICANT = 8.0
+# Standard errors that are shown as dark, for noise reaches them, and as the brightest.
+SIGNIFICANT = (2, 8)
+# Characters of an attribute that are shown; hashes are cut.
+LONGEST = 40
+# What the page tells of both files, by attribute.
+ABOUT = {
+    "ajar:integrator": "integrator",
+    "ajar:rounds": "rounds",
+    "samplesPerPixel": "samples a pixel",
+    "ajar:seed": "seed",
+    "ajar:noise": "noise of the typical pixel",
+    "ajar:sceneHash": "scene",
+    "renderTime": "render time",
+    "DateTime": "finished",
+    "software": "program",
+}
 
 
 def write_report(path: Path, verdict: Verdict, settings: Settings, command: str) -> None:
@@ -33,7 +48,7 @@ def write_report(path: Path, verdict: Verdict, settings: Settings, command: str)
     # A tag inside a text must not end the script.
     text = json.dumps(printable(data)).replace("<", "\\u003c")
     parts = {"{{title}}": html.escape(verdict.headline()), "{{css}}": resource("page.css")}
-    parts |= {"{{js}}": resource("page.js"), "{{data}}": text}
+    parts |= {"{{planes}}": resource("planes.js"), "{{js}}": resource("page.js"), "{{data}}": text}
     for place, part in parts.items():
         page = page.replace(place, part)
     path.write_text(page, "utf-8")
@@ -41,7 +56,9 @@ def write_report(path: Path, verdict: Verdict, settings: Settings, command: str)
 
 def resource(name: str) -> str:
     """A file of this folder."""
-    return (files(__package__) / name).read_text("utf-8")
+    data = pkgutil.get_data(__name__, name)
+    assert data is not None
+    return data.decode("utf-8")
 
 
 def printable(value: Any) -> Any:
@@ -62,6 +79,8 @@ def images(verdict: Verdict, settings: Settings) -> dict[str, Any]:
     while (width // factor) * (height // factor) > MOST_PIXELS:
         factor += 1
     colors = [shrunk(picture.color, factor) for picture in (new, reference)]
+    with ThreadPoolExecutor() as pool:
+        ours, theirs = pool.map(encoded, colors)
     flip = verdict.flip or flip_map(new, reference, settings)
     data: dict[str, Any] = {
         "width": colors[0].shape[1],
@@ -69,12 +88,13 @@ def images(verdict: Verdict, settings: Settings) -> dict[str, Any]:
         "factor": factor,
         "origin": [reference.data_window.x, reference.data_window.y],
         "exposure": exposure(colors[1]),
-        "new": encoded(colors[0]),
-        "reference": encoded(colors[1]),
+        "new": ours,
+        "reference": theirs,
         "flip": data_uri(np.rint(np.clip(flip.errors, 0, 1) * 255)),
         "flip_factor": flip.factor,
         "significance": significance(new, reference),
-        "most_significant": MOST_SIGNIFICANT,
+        "significant": SIGNIFICANT,
+        "about": about(new, reference),
         "block": next((g.numbers["block"] for g in verdict.gates if "block" in g.numbers), None),
     }
     return data
@@ -92,7 +112,28 @@ def significance(new: Picture, reference: Picture) -> str | None:
     if ours is None or theirs is None:
         return None
     t = np.abs(Level(new, reference, ours, theirs, 8).t).max(axis=2)
-    return data_uri(np.rint(np.minimum(t / MOST_SIGNIFICANT, 1) * 255))
+    dark, bright = SIGNIFICANT
+    return data_uri(np.rint(np.clip((t - dark) / (bright - dark), 0, 1) * 255))
+
+
+def about(new: Picture, reference: Picture) -> list[list[str]]:
+    """Lines of a table: what, of the new image, of the reference."""
+    pictures = (new, reference)
+    lines = [["mean brightness", *(f"{picture.color.mean(dtype=np.float64):.5g}" for picture in pictures)]]
+    lines += [["pixels", *(f"{p.data_window.width} × {p.data_window.height}" for p in pictures)]]
+    for name, label in ABOUT.items():
+        values = [picture.attributes.get(name) for picture in pictures]
+        if values != [None, None]:
+            lines.append([label, *(shown(value) for value in values)])
+    return lines
+
+
+def shown(value: Any) -> str:
+    """An attribute for people."""
+    if value is None:
+        return "–"
+    text = f"{value:.3g}" if isinstance(value, float) else str(value)
+    return text if len(text) <= LONGEST else f"{text[:12]}…"
 
 
 def exposure(color: np.ndarray) -> float:

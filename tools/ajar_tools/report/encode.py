@@ -12,6 +12,8 @@ import zlib
 
 import numpy as np
 
+from ajar_tools.statistics import over_channels
+
 BIAS = 128
 
 
@@ -40,7 +42,7 @@ def data_uri(pixels: np.ndarray) -> str:
 
 def shared_exponent(color: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Mantissas and exponents: a value is (mantissa + 0.5) / 256 · 2^(exponent − 128), 0 for exponent 0."""
-    brightest = color.max(axis=2)
+    brightest = over_channels(np.maximum, color)
     _, exponent = np.frexp(brightest)
     stored = np.where(brightest > 0, np.clip(exponent + BIAS, 0, 255), 0).astype(np.uint8)
     scale = np.where(stored > 0, np.ldexp(np.float32(256), BIAS - np.maximum(stored, 9).astype(np.int32)), 0)

@@ -1,142 +1,88 @@
 "use strict";
-// The viewer: decodes two images of high dynamic range, tones them, and draws what is asked for. No libraries.
+// The viewer: what the planes of planes.js are shown as, and what keys and mouse do.
 
-const data = JSON.parse(document.getElementById("data").textContent);
 const $ = (id) => document.getElementById(id);
+const WARM = "linear-gradient(90deg, #00f, #fff, #f00)";
+const HOT = `linear-gradient(90deg, ${HEAT.map((c) => `rgb(${c})`)})`;
+// Name, title, hint, and of maps the colours from one value to another.
 const MODES = [
-  ["swap", "Swap", "Hold the mouse button over the image, or the space bar, to see the reference."],
+  ["swap", "Swap", "Hold the mouse button over the image, or the space bar, to see the reference; B blinks."],
   ["wipe", "Wipe", "Move over the image: the new one is left of the line, the reference right of it."],
   ["new", "New", "The new image."],
   ["reference", "Reference", "The image that is right."],
-  ["difference", "Difference", "Red where the new image is brighter, blue where it is darker; full colour at 50 %."],
-  ["significance", "Beyond noise", "How far 8×8 blocks differ in standard errors; noise alone stays dark."],
-  ["flip", "FLIP", "What a person would notice when the images are swapped."],
+  ["difference", "Difference", "Red where the new image is brighter, blue where it is darker.", WARM, "−50 %", "+50 %"],
+  ["significance", "Beyond noise", "How far 8×8 blocks differ; noise alone stays dark.", HOT],
+  ["flip", "FLIP", "What a person would notice when the images are swapped.", HOT, "nothing", "everything"],
 ];
-const state = { mode: "swap", held: false, wipe: 0.5, exposure: 0, zoom: 0 };
-let planes = {};
+const state = { mode: "swap", held: false, blink: 0, wipe: 0.5, exposure: 0, zoom: 0 };
+const planes = {};
 
 function writeText() {
   const v = data.verdict;
   $("head").className = v.outcome;
-  $("word").textContent = { pass: "SAME PICTURE", fail: "DIFFERENT PICTURE", cannot: "CANNOT COMPARE" }[v.outcome];
-  $("reason").textContent = v.headline.replace(/^[A-Z ]+: /, "");
+  $("word").textContent = { pass: "Same picture", fail: "Different picture", cannot: "Cannot compare" }[v.outcome];
+  $("reason").textContent = v.reason;
+  $("names").textContent = `${v.new}, compared with ${v.reference}`;
   $("command").textContent = data.command;
   $("numbers").textContent = JSON.stringify(v.gates, null, 1);
-  for (const gate of v.gates) {
-    const row = $("gates").tBodies[0].insertRow();
-    for (const text of [gate.gate, gate.status, gate.message]) row.insertCell().textContent = text;
+  v.gates.forEach((gate, i) => {
+    const row = addRow($("gates"), [`${i + 1}  ${gate.gate}`, gate.status, gate.message]);
     row.cells[1].className = gate.status;
-  }
-  for (const line of v.exceptions) {
-    const row = $("gates").tBodies[0].insertRow();
-    for (const text of ["", "excused", line]) row.insertCell().textContent = text;
-  }
-  $("copy").onclick = () => navigator.clipboard && navigator.clipboard.writeText(data.command);
-}
-
-async function pixels(uri) {
-  const image = new Image();
-  image.src = uri;
-  await image.decode();
-  const canvas = new OffscreenCanvas(image.width, image.height);
-  const context = canvas.getContext("2d", { willReadFrequently: true });
-  context.drawImage(image, 0, 0);
-  return context.getImageData(0, 0, image.width, image.height);
-}
-
-// Linear floats, three a pixel.
-async function decode(image) {
-  const [mantissa, exponent] = await Promise.all([pixels(image.mantissa), pixels(image.exponent)]);
-  const linear = new Float32Array(data.width * data.height * 3);
-  for (let i = 0, j = 0; i < mantissa.data.length; i += 4, j += 3) {
-    const e = exponent.data[i];
-    if (e === 0) continue;
-    const scale = 2 ** (e - 136);
-    for (let c = 0; c < 3; c++) linear[j + c] = (mantissa.data[i + c] + 0.5) * scale;
-  }
-  return linear;
-}
-
-function sheet(width, height, fill) {
-  const canvas = new OffscreenCanvas(width, height);
-  const context = canvas.getContext("2d");
-  const image = context.createImageData(width, height);
-  fill(image.data);
-  context.putImageData(image, 0, 0);
-  return canvas;
-}
-
-const SRGB = Uint8ClampedArray.from({ length: 4097 }, (_, i) => {
-  const x = i / 4096;
-  return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
-});
-
-function toned(linear) {
-  const gain = 4096 * 2 ** state.exposure;
-  return sheet(data.width, data.height, (out) => {
-    for (let i = 0, j = 0; j < linear.length; i += 4, j += 3) {
-      for (let c = 0; c < 3; c++) out[i + c] = SRGB[Math.min(4096, linear[j + c] * gain) | 0];
-      out[i + 3] = 255;
-    }
   });
-}
-
-function difference(a, b) {
-  let mean = 0;
-  for (const x of b) mean += x / b.length;
-  return sheet(data.width, data.height, (out) => {
-    for (let i = 0, j = 0; j < a.length; i += 4, j += 3) {
-      const [x, y] = [a[j] + a[j + 1] + a[j + 2], b[j] + b[j + 1] + b[j + 2]];
-      const d = Math.max(-1, Math.min(1, (2 * (x - y)) / (y + 0.3 * mean + 1e-30)));
-      const fade = 255 * (1 - Math.abs(d));
-      out.set(d > 0 ? [255, fade, fade, 255] : [fade, fade, 255, 255], i);
-    }
-  });
-}
-
-// Black, violet, orange, white: dark is unremarkable.
-function heat(image) {
-  const stops = [[0, 0, 4], [87, 16, 110], [188, 55, 84], [249, 142, 9], [252, 255, 164]];
-  return sheet(image.width, image.height, (out) => {
-    for (let i = 0; i < out.length; i += 4) {
-      const x = (image.data[i] / 255) * (stops.length - 1);
-      const k = Math.min(stops.length - 2, Math.floor(x));
-      for (let c = 0; c < 3; c++) out[i + c] = stops[k][c] + (x - k) * (stops[k + 1][c] - stops[k][c]);
-      out[i + 3] = 255;
-    }
-  });
-}
-
-function draw() {
-  const context = $("canvas").getContext("2d");
-  const { width, height } = data;
-  const show = (canvas, w = width, h = height) => {
-    context.imageSmoothingEnabled = false;
-    context.drawImage(canvas, 0, 0, w, h);
+  for (const line of v.exceptions) addRow($("gates"), ["", "excused", line]);
+  for (const line of data.about || []) addRow($("about"), line);
+  $("copy").onclick = async () => {
+    await navigator.clipboard?.writeText(data.command);
+    $("copy").textContent = "copied";
   };
-  if (state.mode === "swap") show(state.held ? planes.reference : planes.new);
-  else if (state.mode === "wipe") {
+}
+
+function addRow(table, texts) {
+  const row = table.tBodies[0].insertRow();
+  for (const text of texts) row.insertCell().textContent = text;
+  return row;
+}
+
+// Draws what is shown in a mode.
+function paint(context, mode) {
+  const { width, height } = data;
+  const show = (canvas, w = width, h = height) => context.drawImage(canvas, 0, 0, w, h);
+  context.imageSmoothingEnabled = false;
+  if (mode === "wipe") {
     const x = Math.round(state.wipe * width);
     show(planes.reference);
     if (x > 0) context.drawImage(planes.new, 0, 0, x, height, 0, 0, x, height);
     context.fillStyle = "#ffd60a";
     context.fillRect(x, 0, Math.max(1, width / 1000), height);
-  } else if (state.mode === "significance") {
-    // The last blocks may reach beyond the image.
-    const side = 8 / data.factor;
-    show(planes.significance, planes.significance.width * side, planes.significance.height * side);
-  } else if (state.mode === "flip") {
-    const side = data.flip_factor / data.factor;
+  } else if (mode === "significance" || mode === "flip") {
+    // The last blocks may reach beyond the image, or not fill it.
+    const side = (mode === "flip" ? data.flip_factor : 8) / data.factor;
+    context.fillStyle = "#000";
     context.fillRect(0, 0, width, height);
-    show(planes.flip, planes.flip.width * side, planes.flip.height * side);
-  } else show(planes[state.mode]);
-  const which = { swap: state.held ? "reference" : "new" }[state.mode] || state.mode;
-  $("canvas").dataset.shown = which;
+    show(planes[mode], planes[mode].width * side, planes[mode].height * side);
+  } else show(planes[mode]);
+}
+
+function draw() {
+  const shown = state.mode === "swap" ? (state.held ? "reference" : "new") : state.mode;
+  paint($("canvas").getContext("2d"), shown);
+  $("canvas").dataset.shown = shown;
+  $("left").textContent = shown === "wipe" ? "new" : shown === "new" || shown === "reference" ? shown : "";
+  $("right").textContent = shown === "wipe" ? "reference" : "";
+}
+
+function drawThumbs() {
+  for (const button of $("modes").children) {
+    const context = button.querySelector("canvas").getContext("2d");
+    const scale = Math.min(context.canvas.width / data.width, context.canvas.height / data.height);
+    context.setTransform(scale, 0, 0, scale, 0, 0);
+    paint(context, button.dataset.mode === "swap" ? "new" : button.dataset.mode);
+  }
 }
 
 function layout() {
   const { width, height, block, factor, origin } = data;
-  const fit = Math.min($("stage").clientWidth / width, (0.72 * innerHeight) / height);
+  const fit = Math.min($("stage").clientWidth / width, (0.66 * innerHeight) / height);
   const zoom = state.zoom || (fit > 1 ? Math.floor(fit) : fit);
   Object.assign($("frame").style, { width: `${width * zoom}px`, height: `${height * zoom}px` });
   $("block").hidden = !block;
@@ -149,8 +95,13 @@ function layout() {
 function setMode(mode) {
   state.mode = mode;
   for (const button of $("modes").children) button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
+  const [, , hint, colours, low, high] = MODES.find(([name]) => name === mode);
   const note = data.factor > 1 ? ` Each pixel here is the mean of ${data.factor}×${data.factor}.` : "";
-  $("hint").textContent = MODES.find(([name]) => name === mode)[2] + note;
+  $("hint").textContent = hint + note;
+  $("scale").hidden = !colours;
+  $("scale").style.setProperty("--colours", colours || "none");
+  $("low").textContent = low || `${data.significant[0]}`;
+  $("high").textContent = high || `${data.significant[1]} standard errors`;
   draw();
 }
 
@@ -160,6 +111,7 @@ function setExposure(stops) {
   planes.new = toned(planes.newLinear);
   planes.reference = toned(planes.referenceLinear);
   draw();
+  drawThumbs();
 }
 
 function readPixel(event) {
@@ -174,11 +126,30 @@ function readPixel(event) {
     `pixel ${place}   new ${text(planes.newLinear)}   reference ${text(planes.referenceLinear)}`;
 }
 
+function hold(held) {
+  state.held = held;
+  draw();
+}
+
+function toggleBlink() {
+  clearInterval(state.blink);
+  state.blink = state.blink ? 0 : setInterval(() => hold(!state.held), 500);
+  setMode("swap");
+  if (!state.blink) hold(false);
+}
+
+function press(event) {
+  if (event.target.matches("select") || event.ctrlKey || event.metaKey || event.altKey) return;
+  const button = $("modes").children[Number(event.key) - 1];
+  if (button) setMode(button.dataset.mode);
+  if (event.key === "b") toggleBlink();
+  if (event.key === " ") {
+    event.preventDefault();
+    if (!event.repeat) hold(true);
+  }
+}
+
 function listen() {
-  const hold = (held) => {
-    state.held = held;
-    draw();
-  };
   $("frame").onpointermove = (event) => {
     const box = $("frame").getBoundingClientRect();
     state.wipe = (event.clientX - box.left) / box.width;
@@ -187,15 +158,7 @@ function listen() {
   };
   $("frame").onpointerdown = () => hold(true);
   addEventListener("pointerup", () => hold(false));
-  addEventListener("keydown", (event) => {
-    if (event.target.matches("select")) return;
-    const button = $("modes").children[Number(event.key) - 1];
-    if (button) setMode(button.dataset.mode);
-    if (event.key === " " && !event.repeat) {
-      event.preventDefault();
-      hold(true);
-    }
-  });
+  addEventListener("keydown", press);
   addEventListener("keyup", (event) => event.key === " " && hold(false));
   $("exposure").oninput = () => setExposure(Number($("exposure").value));
   $("zoom").onchange = () => {
@@ -203,6 +166,20 @@ function listen() {
     layout();
   };
   addEventListener("resize", layout);
+}
+
+function addButtons() {
+  const modes = MODES.filter(([mode]) => mode !== "significance" || data.significance);
+  modes.forEach(([mode, title], i) => {
+    const button = $("modes").appendChild(document.createElement("button"));
+    const thumb = button.appendChild(document.createElement("canvas"));
+    const scale = Math.min(150 / data.width, 90 / data.height);
+    Object.assign(thumb, { width: Math.ceil(data.width * scale), height: Math.ceil(data.height * scale) });
+    button.dataset.mode = mode;
+    button.append(title);
+    button.appendChild(document.createElement("kbd")).textContent = i + 1;
+    button.onclick = () => setMode(mode);
+  });
 }
 
 async function showImages() {
@@ -213,14 +190,7 @@ async function showImages() {
   planes.difference = difference(planes.newLinear, planes.referenceLinear);
   planes.flip = heat(await pixels(data.flip));
   if (data.significance) planes.significance = heat(await pixels(data.significance));
-  const modes = MODES.filter(([mode]) => mode !== "significance" || data.significance);
-  modes.forEach(([mode, name], i) => {
-    const button = $("modes").appendChild(document.createElement("button"));
-    button.dataset.mode = mode;
-    button.textContent = name;
-    button.appendChild(document.createElement("kbd")).textContent = i + 1;
-    button.onclick = () => setMode(mode);
-  });
+  addButtons();
   $("exposure").value = data.exposure;
   setExposure(data.exposure);
   setMode("swap");

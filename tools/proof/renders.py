@@ -1,0 +1,85 @@
+"""Small renders of the repository's scenes, kept in target/proof for as long as the program stays the same."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+from ajar_tools import read
+from synthetic import File, Recipe
+
+ROOT = Path(__file__).parents[2]
+SIZE = (48, 32)
+ROUNDS = 16
+# Edges of the longest path: enough for glass and doors, and cheap.
+DEPTH = 6
+# Seed of what others are compared with, and how much longer it is rendered.
+REFERENCE, LONGER = 1000, 4
+
+
+@dataclass(frozen=True)
+class Render:
+    """What is asked of Ajar."""
+
+    scene: str
+    integrator: str
+    seed: int
+    rounds: int = ROUNDS
+    changes: tuple[str, ...] = ()
+
+    @property
+    def path(self) -> Path:
+        """Where it is kept."""
+        changes = hashlib.sha256(repr(self.changes).encode()).hexdigest()[:8] if self.changes else ""
+        return folder() / f"{self.scene}-{self.integrator}-{self.seed}-{self.rounds}{changes}.exr"
+
+    def run(self) -> None:
+        """Renders, on one thread."""
+        width, height = SIZE
+        scene = ROOT / "scenes" / self.scene / "scene.toml"
+        begun = self.path.with_name(f"part-{self.path.name}")
+        command = [program(), "render", scene, "-o", begun, "--integrator", self.integrator, "--seed", str(self.seed)]
+        command += ["--size", f"{width}x{height}", "--rounds", str(self.rounds), "--threads", "1", "--quiet"]
+        command += ["--max-depth", str(DEPTH)]
+        command += [word for change in self.changes for word in ("--set", change)]
+        subprocess.run(command, check=True)
+        begun.rename(self.path)
+
+    def file(self) -> File:
+        """The image, to be spoiled and written again."""
+        picture = read(self.path)
+        assert picture.statistics is not None
+        colors = ("R", "G", "B", "A")
+        pixels = np.stack([picture.plane(name) for name in colors], axis=2)
+        recipe = Recipe(*SIZE, rounds=self.rounds, seed=self.seed)
+        return File(pixels, dict(picture.statistics.variances), recipe, colors, oiio.FLOAT)
+
+
+def program() -> str:
+    """The `ajar` to render with."""
+    return os.environ.get("AJAR_BIN") or str(ROOT / "target/release/ajar")
+
+
+@cache
+def folder() -> Path:
+    """The images of this program."""
+    digest = hashlib.sha256(Path(program()).read_bytes()).hexdigest()[:12]
+    path = ROOT / "target" / "proof" / digest
+    path.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def make(renders: Iterable[Render]) -> None:
+    """Renders what is missing, as many at once as there are cores."""
+    missing = [render for render in dict.fromkeys(renders) if not render.path.exists()]
+    print(f"{len(missing)} renders", flush=True)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(Render.run, missing))

@@ -1,0 +1,57 @@
+"""Twins: other seeds of the same scene, which must pass."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+from ajar_tools import Outcome, Picture, Settings, read
+from ajar_tools.comparison import compare_pictures
+from renders import LONGER, REFERENCE, ROUNDS, Render, make
+
+SCENES = ("cornell", "caustic-glass", "door-ajar")
+INTEGRATORS = ("path", "bdpt", "mlt", "ajar")
+# The default, and one that is bold enough for alarms to be counted.
+ALPHAS = (0.001, 0.05)
+
+
+def twins(scene: str, integrator: str, count: int) -> list[Render]:
+    """Renders that differ by their seeds."""
+    return [Render(scene, integrator, seed) for seed in range(1, count + 1)]
+
+
+def reference(scene: str, integrator: str) -> Render:
+    """What they are compared with."""
+    return Render(scene, integrator, REFERENCE, ROUNDS * LONGER)
+
+
+def section(count: int) -> str:
+    """The table."""
+    cells = [(scene, integrator) for scene in SCENES for integrator in INTEGRATORS]
+    make(render for cell in cells for render in [*twins(*cell, count), reference(*cell)])
+    pairs = count * (count - 1) // 2
+    lines = [
+        "\n## Twins that must pass\n",
+        f"{count} renders with other seeds, each against one of {LONGER} times as many rounds, and each against",
+        f"each other ({pairs} pairs): false alarms at the default α of 0.001 and at one of 0.05.\n",
+        "| scene | integrator | α 0.001: reference | pairs | α 0.05: reference | pairs |",
+        "|---|---|---|---|---|---|",
+    ]
+    sums = [0] * 4
+    for scene, integrator in cells:
+        images = [read(render.path) for render in twins(scene, integrator, count)]
+        counts = list(alarms(images, read(reference(scene, integrator).path)))
+        sums = [a + b for a, b in zip(sums, counts)]
+        lines.append(f"| `{scene}` | `{integrator}` | " + " | ".join(map(str, counts)) + " |")
+        print(lines[-1], flush=True)
+    total = [f"**{n}** of {len(cells) * (pairs if i % 2 else count)}" for i, n in enumerate(sums)]
+    lines.append("| all | | " + " | ".join(total) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def alarms(images: list[Picture], longer: Picture) -> Iterator[int]:
+    """False alarms against the reference and in pairs, for each alpha."""
+    for alpha in ALPHAS:
+        for couples in ([(image, longer) for image in images], list(combinations(images, 2))):
+            verdicts = (compare_pictures(*couple, Settings(alpha=alpha)) for couple in couples)
+            yield sum(verdict.outcome is not Outcome.PASS for verdict in verdicts)
