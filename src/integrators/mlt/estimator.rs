@@ -50,7 +50,7 @@ impl Integrator for Ajar {
         if plan.mutations_per_sample == 0.0 {
             return PathTracer.prepare(cx);
         }
-        let space = Space::new(cx.world, cx.settings.window, cx.settings.max_depth);
+        let space = Space::of(&cx);
         let (mutations, table) = mutations(&cx.settings.mutations);
         Box::new(AjarRounds { cx, space, plan, mutations, table, totals: Mutex::default() })
     }

@@ -61,7 +61,7 @@ pub struct PlainChains<'a> {
 impl<'a> PlainChains<'a> {
     /// All mutations with their default weights.
     pub fn new(cx: Context<'a>) -> Self {
-        let space = Space::new(cx.world, cx.settings.window, cx.settings.max_depth);
+        let space = Space::of(&cx);
         let (mutations, table) = mutations(&cx.settings.mutations);
         Self { cx, space, mutations, table }
     }

@@ -70,6 +70,9 @@ impl<'w> Bootstrap<'w> {
                 || self.tracer(),
                 |tracer, block| {
                     let mut found = Vec::new();
+                    if self.space.cancelled() {
+                        return found;
+                    }
                     let samples = block * BLOCK..((block + 1) * BLOCK).min(self.samples);
                     samples.for_each(|i| {
                         self.visit(tracer, i, |f| {

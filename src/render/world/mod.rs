@@ -2,10 +2,17 @@
 
 mod cast;
 mod emission;
+mod emitters;
 mod prepare;
+mod previous;
 mod surface;
+#[cfg(test)]
+mod tests;
 
-pub use prepare::{PrepareOptions, prepare};
+pub use prepare::{PrepareOptions, prepare, prepare_after};
+pub use previous::Previous;
+
+use std::sync::Arc;
 
 use ajar_scene::{Id, Mesh, Node, Scene};
 use glam::{DAffine3, DMat3, DVec3};
@@ -18,6 +25,8 @@ use crate::{
     path::{Kind, Vertex},
     texture::Textures,
 };
+use emitters::Surrounding;
+use previous::Tangents;
 
 /// A mesh placed by a node.
 #[derive(Clone, Debug)]
@@ -49,12 +58,16 @@ pub struct World {
     pub shortest_edge: f64,
     /// The scene, its lights with a shape turned into meshes.
     pub scene: Scene,
-    geometry: Geometry,
+    geometry: Arc<Geometry>,
     instances: Vec<Instance>,
+    /// Meshes of the scene from this number on are the shapes of lights.
+    solids: usize,
     materials: Vec<Material>,
     textures: Textures,
-    /// Tangents per triangle corner, where a material needs them and the mesh has none.
-    tangents: Vec<Option<Vec<[glam::Vec4; 3]>>>,
+    /// What the surroundings in `lights` are made of.
+    surroundings: Vec<Surrounding>,
+    /// For each mesh tangents per triangle corner, where a material needs them and the mesh has none.
+    tangents: Vec<Option<Tangents>>,
     has_alpha: bool,
     has_culling: bool,
     has_absorption: bool,

@@ -5,10 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use toml::de::DeTable;
+use toml::{Spanned, de::DeTable};
 
 use super::{report::Report, source::Source};
-use crate::{Diagnostic, ImportRequest};
+use crate::{Diagnostic, ImportRequest, Looked};
 
 /// Most files that may extend each other.
 const MOST: usize = 16;
@@ -17,6 +17,7 @@ const MOST: usize = 16;
 pub(super) const EXTENDS: &str = "extends";
 
 /// A file with its text.
+#[derive(Clone, Debug)]
 pub(super) struct Text {
     pub path: PathBuf,
     pub text: String,
@@ -26,22 +27,23 @@ pub(super) struct Text {
 ///
 /// # Errors
 /// A file that cannot be read or parsed, or files that extend each other in a circle.
-pub(super) fn read(path: &Path) -> Result<Vec<Text>, Vec<Diagnostic>> {
+pub(super) fn read(path: &Path, looked: &Looked) -> Result<Vec<Text>, Vec<Diagnostic>> {
     let mut texts: Vec<Text> = Vec::new();
     let mut next = Some(path.to_owned());
     while let Some(path) = next {
+        looked.note(&path);
         let text = text(&path)?;
-        next = below(&path, &text, &texts)?;
+        next = below(&path, &text, &texts, looked)?;
         texts.push(Text { path, text });
     }
     Ok(texts)
 }
 
 /// The files as sources. All were parsed before.
-pub(super) fn sources(texts: &[Text]) -> Vec<Source<'_>> {
+pub(super) fn sources<'a>(texts: &'a [Text], looked: &Looked) -> Vec<Source<'a>> {
     texts
         .iter()
-        .filter_map(|Text { path, text }| Some(Source::file(path, text, DeTable::parse(text).ok()?)))
+        .filter_map(|Text { path, text }| Some(Source::file(path, text, DeTable::parse(text).ok()?, looked)))
         .collect()
 }
 
@@ -57,19 +59,33 @@ fn text(path: &Path) -> Result<String, Vec<Diagnostic>> {
     })
 }
 
-/// The file that this one extends.
-fn below(path: &Path, text: &str, above: &[Text]) -> Result<Option<PathBuf>, Vec<Diagnostic>> {
-    let report = Report::new(path, text);
+/// The document in a text.
+///
+/// # Errors
+/// All that the parser does not understand.
+pub(super) fn parse<'a>(path: &Path, text: &'a str) -> Result<Spanned<DeTable<'a>>, Vec<Diagnostic>> {
     let (document, errors) = DeTable::parse_recoverable(text);
-    if !errors.is_empty() {
-        for error in errors {
-            report.push(&error.span().unwrap_or(0..0), Diagnostic::error(error.message()));
-        }
-        // What follows on the same line is mostly the parser finding its feet again.
-        let mut found = report.finish();
-        found.dedup_by_key(|diagnostic| diagnostic.place.map(|(line, _)| line));
-        return Err(found);
+    if errors.is_empty() {
+        return Ok(document);
     }
+    let report = Report::new(path, text);
+    for error in errors {
+        report.push(&error.span().unwrap_or(0..0), Diagnostic::error(error.message()));
+    }
+    // What follows on the same line is mostly the parser finding its feet again.
+    let mut found = report.finish();
+    found.dedup_by_key(|diagnostic| diagnostic.place.map(|(line, _)| line));
+    Err(found)
+}
+
+/// The file that this one extends.
+fn below(
+    path: &Path,
+    text: &str,
+    above: &[Text],
+    looked: &Looked,
+) -> Result<Option<PathBuf>, Vec<Diagnostic>> {
+    let document = parse(path, text)?;
     let Some(value) = document.get_ref().get(EXTENDS) else { return Ok(None) };
     let refuse = |error: Diagnostic| {
         let report = Report::new(path, text);
@@ -82,7 +98,8 @@ fn below(path: &Path, text: &str, above: &[Text]) -> Result<Option<PathBuf>, Vec
             value.get_ref().type_str()
         )));
     };
-    let file = match ImportRequest::new(path).resolve(name) {
+    let request = ImportRequest { looked: looked.clone(), ..ImportRequest::new(path) };
+    let file = match request.resolve(name) {
         Ok(file) => file,
         Err(error) => return refuse(error),
     };

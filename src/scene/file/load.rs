@@ -15,23 +15,25 @@ use super::{
     value::text,
 };
 use crate::{
-    Diagnostic, ImportRequest, Imported, Node, OutputSettings, Overrides, RenderSettings, Scene, Severity,
+    Diagnostic, ImportRequest, Imported, Looked, Node, OutputSettings, Overrides, RenderSettings, Scene,
+    Severity,
 };
 
-/// Reads a scene file, over the files that it extends, below changes from the command line. `import` turns each file it
-/// names into a scene; it is given the folder of the scene file as one more folder that may be read.
+/// Reads a scene file, over the files that it extends, below `overrides`. `import` turns each file it names into a scene; it
+/// is given the folder of the scene file as one more folder that may be read. `looked` notes the files that are looked for.
 ///
 /// # Errors
 /// All errors that were found, in the order of the files, with the warnings among them.
 pub fn load(
     path: &Path,
     overrides: &Overrides,
+    looked: &Looked,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
-    let texts = layers::read(path)?;
+    let texts = layers::read(path, looked)?;
     let assets = Assets { files: texts.iter().map(|text| text.path.clone()).collect(), ..Assets::default() };
-    let mut sources = vec![overrides.source(path)];
-    sources.extend(layers::sources(&texts));
+    let mut sources = overrides.sources(path, looked);
+    sources.extend(layers::sources(&texts, looked));
     assemble(sources, assets, import)
 }
 
@@ -43,11 +45,12 @@ pub fn load_asset(
     path: &Path,
     overrides: &Overrides,
     imported: Imported,
+    looked: &Looked,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
     let Imported { scene, diagnostics, files, render: preference } = imported;
     let assets = Assets { scene, files, preference };
     let nothing = |_: &ImportRequest| Ok(Imported::default());
-    let file = assemble(vec![overrides.source(path)], assets, &nothing)?;
+    let file = assemble(overrides.sources(path, looked), assets, &nothing)?;
     sound(SceneFile { diagnostics: [file.diagnostics, diagnostics].concat(), ..file })
 }
 
@@ -143,9 +146,10 @@ fn add_import(
     diagnostics: &mut Vec<Diagnostic>,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> bool {
-    let mut allowed = Vec::new();
+    let (mut allowed, mut looked) = (Vec::new(), Looked::default());
     let file = keys.required_of("file", |value, source| {
         allowed.push(source.request.folder().to_owned());
+        looked = source.request.looked.clone();
         assets.file(value, source)
     });
     let name = keys.optional("name", text);
@@ -154,7 +158,7 @@ fn add_import(
     keys.finish();
     let Some(path) = file else { return false };
     let name = name.unwrap_or_else(|| stem(&path));
-    match import(&ImportRequest { allowed, choice, ..ImportRequest::new(path) }) {
+    match import(&ImportRequest { allowed, choice, looked, ..ImportRequest::new(path) }) {
         Ok(Imported { scene, diagnostics: found, files, render }) => {
             assets.preference.complete(render);
             diagnostics.extend(found);

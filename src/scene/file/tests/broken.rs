@@ -1,7 +1,7 @@
 //! Broken files and exactly what is said about them.
 
 use super::wrong;
-use crate::Overrides;
+use crate::{Looked, Overrides};
 
 #[test]
 fn messages() {
@@ -205,10 +205,15 @@ fn not_text() {
     let folder = super::folder("", &[]);
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, b"[render]\n# \xff\n").unwrap();
-    let errors = super::load(&path, &Overrides::default(), &super::import).unwrap_err();
+    let errors = super::load(&path, &Overrides::default(), &Looked::default(), &super::import).unwrap_err();
     assert_eq!(errors[0].to_string(), format!("{}:2:3: error: is not text in UTF-8", path.display()));
-    let errors =
-        super::load(&folder.path().join("none.toml"), &Overrides::default(), &super::import).unwrap_err();
+    let errors = super::load(
+        &folder.path().join("none.toml"),
+        &Overrides::default(),
+        &Looked::default(),
+        &super::import,
+    )
+    .unwrap_err();
     assert!(errors[0].to_string().contains("none.toml: error: cannot be read"), "{}", errors[0]);
 }
 
