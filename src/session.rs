@@ -18,7 +18,7 @@ use ajar_scene::{
 };
 use glam::DAffine3;
 
-use crate::shard::Shard;
+use crate::{kept::kept, shard::Shard};
 
 /// A loaded file: the scene and what the file says about rendering it.
 #[derive(Debug)]
@@ -41,6 +41,8 @@ pub struct LoadOptions<'a> {
     pub set: &'a [String],
     /// Whether warnings are errors.
     pub strict: bool,
+    /// Folders below which files may be read besides the folder of the file.
+    pub allow: &'a [PathBuf],
     /// Bytes that no importer may exceed.
     pub memory_limit: u64,
     /// Variants and moment of the assets, over those that a scene file says.
@@ -105,23 +107,26 @@ pub fn open_as(
     let memory_limit = options.memory_limit;
     let import = |request: &ImportRequest| {
         let choice = options.choice.or(&request.choice);
-        (reading.import)(&ImportRequest { memory_limit, choice, ..request.clone() })
+        let mut allowed = request.allowed.clone();
+        allowed.extend_from_slice(options.allow);
+        (reading.import)(&ImportRequest { allowed, memory_limit, choice, ..request.clone() })
     };
     let mut overrides = Overrides::parse(options.set)?;
     if let Some((path, text)) = reading.draft {
         overrides = overrides.below(path, text)?;
     }
-    let looked = &reading.looked;
+    let (allowed, looked) = (options.allow.to_vec(), reading.looked.clone());
+    let request = ImportRequest { allowed, looked, ..ImportRequest::new(path) };
     let mut file = if is_scene_file(path) {
         whole(path, options.choice).map_err(|d| vec![d])?;
-        ajar_scene::load(path, &overrides, looked, &import)?
+        ajar_scene::load(&request, &overrides, &import)?
     } else {
-        looked.note(path);
-        let request = ImportRequest { looked: looked.clone(), ..ImportRequest::new(path) };
+        reading.looked.note(path);
         let imported = import(&request).map_err(|d| vec![d])?;
-        ajar_scene::load_asset(path, &overrides, imported, looked)?
+        ajar_scene::load_asset(&request, &overrides, imported)?
     };
-    file.diagnostics.extend(about(path, file.scene.validate()));
+    let kept = kept(&file.scene, &file.diagnostics);
+    file.diagnostics.extend(about(path, file.scene.validate().into_iter().chain([kept])));
     let least = if options.strict { Severity::Warning } else { Severity::Error };
     if file.diagnostics.iter().any(|d| d.severity >= least) {
         return Err(file.diagnostics);

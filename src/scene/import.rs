@@ -139,7 +139,8 @@ impl ImportRequest {
             self.looked.note(&real);
             Ok(real)
         } else {
-            Err(refuse("lies outside the scene's folder").hint("move it there or allow its folder"))
+            Err(refuse("lies outside the scene's folder")
+                .hint("move it there, or allow its folder with --allow"))
         }
     }
 }

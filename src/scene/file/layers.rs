@@ -8,7 +8,7 @@ use std::{
 use toml::{Spanned, de::DeTable};
 
 use super::{report::Report, source::Source};
-use crate::{Diagnostic, ImportRequest, Looked};
+use crate::{Diagnostic, ImportRequest};
 
 /// Most files that may extend each other.
 const MOST: usize = 16;
@@ -23,27 +23,27 @@ pub(super) struct Text {
     pub text: String,
 }
 
-/// Reads the file at `path` and all that it extends, the first of which counts.
+/// Reads the file of `request` and all that it extends, the first of which counts.
 ///
 /// # Errors
 /// A file that cannot be read or parsed, or files that extend each other in a circle.
-pub(super) fn read(path: &Path, looked: &Looked) -> Result<Vec<Text>, Vec<Diagnostic>> {
+pub(super) fn read(request: &ImportRequest) -> Result<Vec<Text>, Vec<Diagnostic>> {
     let mut texts: Vec<Text> = Vec::new();
-    let mut next = Some(path.to_owned());
+    let mut next = Some(request.path.clone());
     while let Some(path) = next {
-        looked.note(&path);
+        request.looked.note(&path);
         let text = text(&path)?;
-        next = below(&path, &text, &texts, looked)?;
+        next = below(&ImportRequest { path: path.clone(), ..request.clone() }, &text, &texts)?;
         texts.push(Text { path, text });
     }
     Ok(texts)
 }
 
 /// The files as sources. All were parsed before.
-pub(super) fn sources<'a>(texts: &'a [Text], looked: &Looked) -> Vec<Source<'a>> {
+pub(super) fn sources(texts: &[Text]) -> Vec<Source<'_>> {
     texts
         .iter()
-        .filter_map(|Text { path, text }| Some(Source::file(path, text, DeTable::parse(text).ok()?, looked)))
+        .filter_map(|Text { path, text }| Some(Source::file(path, text, DeTable::parse(text).ok()?)))
         .collect()
 }
 
@@ -79,12 +79,8 @@ pub(super) fn parse<'a>(path: &Path, text: &'a str) -> Result<Spanned<DeTable<'a
 }
 
 /// The file that this one extends.
-fn below(
-    path: &Path,
-    text: &str,
-    above: &[Text],
-    looked: &Looked,
-) -> Result<Option<PathBuf>, Vec<Diagnostic>> {
+fn below(request: &ImportRequest, text: &str, above: &[Text]) -> Result<Option<PathBuf>, Vec<Diagnostic>> {
+    let path = &*request.path;
     let document = parse(path, text)?;
     let Some(value) = document.get_ref().get(EXTENDS) else { return Ok(None) };
     let refuse = |error: Diagnostic| {
@@ -98,7 +94,6 @@ fn below(
             value.get_ref().type_str()
         )));
     };
-    let request = ImportRequest { looked: looked.clone(), ..ImportRequest::new(path) };
     let file = match request.resolve(name) {
         Ok(file) => file,
         Err(error) => return refuse(error),

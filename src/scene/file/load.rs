@@ -19,47 +19,50 @@ use crate::{
     Severity,
 };
 
-/// Reads a scene file, over the files that it extends, below `overrides`. `import` turns each file it names into a scene; it
-/// is given the folder of the scene file as one more folder that may be read. `looked` notes the files that are looked for.
+/// Reads the scene file of `request`, over the files that it extends, below `overrides`. `import` turns each file it names
+/// into a scene; it is given the folder of the scene file as one more folder that may be read.
 ///
 /// # Errors
 /// All errors that were found, in the order of the files, with the warnings among them.
 pub fn load(
-    path: &Path,
+    request: &ImportRequest,
     overrides: &Overrides,
-    looked: &Looked,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
-    let texts = layers::read(path, looked)?;
+    let texts = layers::read(request)?;
     let assets = Assets { files: texts.iter().map(|text| text.path.clone()).collect(), ..Assets::default() };
-    let mut sources = overrides.sources(path, looked);
-    sources.extend(layers::sources(&texts, looked));
-    assemble(sources, assets, import)
+    let mut sources = overrides.sources(&request.path);
+    sources.extend(layers::sources(&texts));
+    assemble(sources, request, assets, import)
 }
 
-/// Changes from the command line applied to an imported asset, as if a scene file imported nothing else.
+/// Changes applied to the asset of `request`, imported, as if a scene file imported nothing else.
 ///
 /// # Errors
 /// What is wrong with the changes.
 pub fn load_asset(
-    path: &Path,
+    request: &ImportRequest,
     overrides: &Overrides,
     imported: Imported,
-    looked: &Looked,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
     let Imported { scene, diagnostics, files, render: preference } = imported;
     let assets = Assets { scene, files, preference };
     let nothing = |_: &ImportRequest| Ok(Imported::default());
-    let file = assemble(overrides.sources(path, looked), assets, &nothing)?;
+    let file = assemble(overrides.sources(&request.path), request, assets, &nothing)?;
     sound(SceneFile { diagnostics: [file.diagnostics, diagnostics].concat(), ..file })
 }
 
-/// What the sources together say, with what is to be said about them.
+/// What the sources together say, with what is to be said about them. They look for files as `request` does.
 fn assemble(
-    sources: Vec<Source<'_>>,
+    mut sources: Vec<Source<'_>>,
+    request: &ImportRequest,
     assets: Assets,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
+    for source in &mut sources {
+        source.request.allowed.clone_from(&request.allowed);
+        source.request.looked = request.looked.clone();
+    }
     let settings = Settings::default();
     let (mut file, imported) = read(Keys::new(&sources, &settings), assets, import);
     file.diagnostics =

@@ -9,7 +9,7 @@ use super::{
     layers::{self, Text},
     source::Source,
 };
-use crate::{Cause, Diagnostic, Looked};
+use crate::{Cause, Diagnostic};
 
 /// Changes to what a scene file says, by the same key paths. Cameras, lights and imports are named where the file has a
 /// list: `camera.main.yfov`, or counted from 0: `camera[0].yfov`.
@@ -57,14 +57,12 @@ impl Overrides {
     }
 
     /// What goes before the file at `path`, the first of which counts.
-    pub(super) fn sources<'a>(&'a self, path: &'a Path, looked: &Looked) -> Vec<Source<'a>> {
-        let mut sources = self
-            .draft
-            .as_ref()
-            .map_or_else(Vec::new, |draft| layers::sources(std::slice::from_ref(draft), looked));
+    pub(super) fn sources<'a>(&'a self, path: &'a Path) -> Vec<Source<'a>> {
+        let mut sources =
+            self.draft.as_ref().map_or_else(Vec::new, |it| layers::sources(std::slice::from_ref(it)));
         // Parsed before.
         let document = DeTable::parse(&self.document).unwrap_or_else(|_| Spanned::new(0..0, DeTable::new()));
-        sources.push(Source::command_line(path, &self.document, document, looked));
+        sources.push(Source::command_line(path, &self.document, document));
         sources
     }
 }

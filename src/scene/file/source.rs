@@ -6,7 +6,7 @@ use serde::Serialize;
 use toml::{Spanned, de::DeTable};
 
 use super::report::{Complaint, Report};
-use crate::{Diagnostic, ImportRequest, Looked};
+use crate::{Diagnostic, ImportRequest};
 
 /// What the command line is called.
 const COMMAND_LINE: &str = "--set";
@@ -36,19 +36,14 @@ pub(super) struct Source<'a> {
 
 impl<'a> Source<'a> {
     /// A file of this text, parsed.
-    pub fn file(path: &'a Path, text: &'a str, document: Spanned<DeTable<'a>>, looked: &Looked) -> Self {
-        let request = ImportRequest { looked: looked.clone(), ..ImportRequest::new(path) };
+    pub fn file(path: &'a Path, text: &'a str, document: Spanned<DeTable<'a>>) -> Self {
+        let request = ImportRequest::new(path);
         Self { report: Report::new(path, text), request, document, text, is_command_line: false }
     }
 
     /// The command line; files that it names are found like those of the file at `path`.
-    pub fn command_line(
-        path: &'a Path,
-        text: &'a str,
-        document: Spanned<DeTable<'a>>,
-        looked: &Looked,
-    ) -> Self {
-        Self { is_command_line: true, ..Self::file(path, text, document, looked) }
+    pub fn command_line(path: &'a Path, text: &'a str, document: Spanned<DeTable<'a>>) -> Self {
+        Self { is_command_line: true, ..Self::file(path, text, document) }
     }
 
     /// What it is called.

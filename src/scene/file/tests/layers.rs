@@ -5,7 +5,7 @@ use std::fs;
 use glam::DVec3;
 
 use super::{folder, import};
-use crate::{LightKind, Looked, Overrides, Projection, SceneFile, file::load};
+use crate::{ImportRequest, LightKind, Looked, Overrides, Projection, SceneFile, file::load};
 
 const BASE: &str = r#"
 [[import]]
@@ -36,9 +36,8 @@ fn over(toml: &str, changes: &[&str]) -> Result<SceneFile, Vec<String>> {
     let folder = folder(toml, &["a.glb", "b.glb", "sky.hdr"]);
     fs::write(folder.path().join("base.toml"), BASE).unwrap();
     let found = load(
-        &folder.path().join("scene.toml"),
+        &ImportRequest::new(folder.path().join("scene.toml")),
         &Overrides::parse(changes).unwrap(),
-        &Looked::default(),
         &import,
     );
     let prefix = format!("{}/", folder.path().display());
@@ -143,10 +142,12 @@ fn drafted(draft: &str) -> (Result<SceneFile, Vec<String>>, Vec<String>) {
     let folder = folder("extends = \"base.toml\"\n", &["a.glb", "map.png"]);
     fs::write(folder.path().join("base.toml"), BASE).unwrap();
     let looked = Looked::default();
+    let request = ImportRequest::new(folder.path().join("scene.toml"));
+    let request = ImportRequest { looked: looked.clone(), ..request };
     let overrides = Overrides::parse(&["material.Chrome.roughness=0.2"]).unwrap();
     let found = overrides
         .below(folder.path().join("look.toml"), draft)
-        .and_then(|overrides| load(&folder.path().join("scene.toml"), &overrides, &looked, &import));
+        .and_then(|overrides| load(&request, &overrides, &import));
     let prefix = format!("{}/", folder.path().display());
     let real = format!("{}/", folder.path().canonicalize().unwrap().display());
     let files = looked.take().iter().map(|path| path.display().to_string()).collect::<Vec<_>>();

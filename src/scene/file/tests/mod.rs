@@ -12,9 +12,7 @@ use std::{fs, path::Path};
 use tempfile::TempDir;
 
 use super::{Overrides, SceneFile, load};
-use crate::{
-    Diagnostic, ImportRequest, Imported, Light, LightKind, Looked, Material, Mesh, Node, Scene, Texture,
-};
+use crate::{Diagnostic, ImportRequest, Imported, Light, LightKind, Material, Mesh, Node, Scene, Texture};
 
 /// A folder with this `scene.toml` and empty files of these names.
 fn folder(toml: &str, files: &[&str]) -> TempDir {
@@ -61,7 +59,7 @@ fn import(request: &ImportRequest) -> Result<Imported, Diagnostic> {
 }
 
 fn read(folder: &Path) -> Result<SceneFile, Vec<Diagnostic>> {
-    load(&folder.join("scene.toml"), &Overrides::default(), &Looked::default(), &import)
+    load(&ImportRequest::new(folder.join("scene.toml")), &Overrides::default(), &import)
 }
 
 /// The scene file of this text, which must be right.
