@@ -75,7 +75,7 @@ pub fn load(path: &Path, options: &LoadOptions<'_>) -> Result<Loaded, Vec<Diagno
 
 /// Adds a camera or light where there is none.
 pub fn complete(path: &Path, options: &LoadOptions<'_>, file: &mut SceneFile) {
-    let [width, height] = options.size.or(file.render.size).unwrap_or(DEFAULT_SIZE).map(f64::from);
+    let [width, height] = film_size(options.size, file, None).map(f64::from);
     let camera = file.scene.add_default_camera(width / height);
     let light = file.scene.add_default_light();
     file.diagnostics.extend(about(path, camera.into_iter().chain(light)));
@@ -132,6 +132,17 @@ pub fn open_as(
         return Err(file.diagnostics);
     }
     Ok(file)
+}
+
+/// Size of the film: what is asked for, else what the file says, else 1280 pixels wide in the shape that the camera, called
+/// `camera` where that is not what the file says, was composed for.
+pub fn film_size(asked: Option<[u32; 2]>, file: &SceneFile, camera: Option<&str>) -> [u32; 2] {
+    asked.or(file.render.size).unwrap_or_else(|| {
+        let name = camera.or(file.render.camera.as_deref());
+        let aspect = choose_camera(&file.scene, name).ok().and_then(|(id, _)| file.scene.cameras[id].aspect);
+        let [width, height] = DEFAULT_SIZE;
+        [width, aspect.map_or(height, |aspect| (width as f32 / aspect).round().clamp(1.0, 65535.0) as u32)]
+    })
 }
 
 /// Variants belong to one asset, a scene file may import several.

@@ -140,6 +140,11 @@ fn window_room() {
 }
 
 #[test]
+fn reading_corner() {
+    check("reading-corner", 16, 4);
+}
+
+#[test]
 fn many_lights() {
     check("many-lights", 16, 4);
 }

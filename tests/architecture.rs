@@ -194,9 +194,9 @@ fn every_scene_is_complete() {
         if !entry.path().is_dir() || name == "modelling" || MADE.contains(&name.as_str()) {
             continue;
         }
-        let missing = ["scene.toml", "LICENSE.md", "generate.py"]
-            .into_iter()
-            .filter(|f| !entry.path().join(f).is_file());
+        let has = |file: &str| entry.path().join(file).is_file();
+        let scene = if has("scene.usda") { "scene.usda" } else { "scene.toml" };
+        let missing = [scene, "LICENSE.md", "generate.py"].into_iter().filter(|file| !has(file));
         offenders.extend(missing.map(|file| format!("scenes/{name} has no {file}")));
     }
     offenders.sort();

@@ -12,7 +12,7 @@ use std::{
 use ajar_scene::{Cause, Diagnostic};
 use serde::Deserialize;
 
-use super::process::Program;
+use super::{config, process::Program};
 
 const PREFIX: &str = "ajar-import-";
 const PROTOCOL: u64 = 1;
@@ -49,7 +49,10 @@ struct Probe {
 /// No plug-in claims it and some plug-in could not be asked: it might have.
 pub(crate) fn claimant(path: &Path, head: &[u8]) -> Result<Option<PlugIn>, Diagnostic> {
     static ASKED: OnceLock<Vec<Result<PlugIn, Diagnostic>>> = OnceLock::new();
-    let asked = ASKED.get_or_init(|| executables().into_values().map(|program| probe(&program)).collect());
+    let asked = ASKED.get_or_init(|| match programs() {
+        Ok(programs) => programs.into_values().map(|program| probe(&program)).collect(),
+        Err(error) => vec![Err(error)],
+    });
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
     let by_extension = asked.iter().flatten().find(|plug_in| plug_in.extensions.contains(&extension));
     let begins = |plug_in: &&PlugIn| plug_in.heads.iter().any(|bytes| head.starts_with(bytes));
@@ -58,6 +61,13 @@ pub(crate) fn claimant(path: &Path, head: &[u8]) -> Result<Option<PlugIn>, Diagn
         (None, Some(error)) => Err(error.clone()),
         (claim, _) => Ok(claim),
     }
+}
+
+/// All plug-ins by name; those that the user's settings name go before those on the search path.
+fn programs() -> Result<BTreeMap<String, PathBuf>, Diagnostic> {
+    let mut found = executables();
+    found.extend(config::plug_ins()?.into_iter().map(|(name, program)| (format!("{PREFIX}{name}"), program)));
+    Ok(found)
 }
 
 /// The plug-ins on the search path by name; the first of a name wins.

@@ -3,6 +3,7 @@
 //! `docs/plug-ins.md` is the specification of what they are asked and what they answer.
 
 mod answer;
+mod config;
 mod find;
 mod process;
 

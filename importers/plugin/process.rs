@@ -6,7 +6,7 @@ use std::{
     process::{Child, Command, ExitStatus, Stdio},
     sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel},
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use ajar_scene::Cause;
@@ -15,6 +15,8 @@ use ajar_scene::Cause;
 const MOST_MESSAGES: usize = 1 << 22;
 /// Bytes that are read at once.
 const BLOCK: usize = 1 << 16;
+/// Between two looks whether it has ended.
+const POLL: Duration = Duration::from_millis(2);
 
 /// What is run, and its limits.
 pub(super) struct Program {
@@ -83,13 +85,24 @@ impl Program {
         read(child.stdout.take(), Event::Output, &send);
         read(child.stderr.take(), Event::Message, &send);
         let collected = self.collect(&events);
-        if collected.is_err() {
+        let ended = collected.and_then(|said| Ok((self.ended(&mut child)?, said)));
+        if ended.is_err() {
             stop(&mut child);
         }
-        let (output, messages) = collected?;
-        // Both streams are closed: nothing is left for it to do.
-        let status = child.wait().map_err(Failure::Start)?;
+        let (status, (output, messages)) = ended?;
         Ok(End { status, output, messages })
+    }
+
+    /// How it ended, now that both streams are closed and nothing is left for it to do.
+    fn ended(&self, child: &mut Child) -> Result<ExitStatus, Failure> {
+        let closed = Instant::now();
+        loop {
+            match child.try_wait().map_err(Failure::Start)? {
+                Some(status) => return Ok(status),
+                None if closed.elapsed() > self.silence => return Err(Failure::Silence(self.silence)),
+                None => thread::sleep(POLL),
+            }
+        }
     }
 
     fn collect(&self, events: &Receiver<Event>) -> Result<(Vec<u8>, Vec<u8>), Failure> {

@@ -21,7 +21,13 @@ const PYTHON: &str = if cfg!(windows) { "Scripts/python.exe" } else { "bin/pytho
 /// There is none and none can be made.
 pub(super) fn python() -> Result<PathBuf, Diagnostic> {
     if let Some(python) = named(OVERRIDE) {
-        return Ok(python);
+        // A name without folder is looked for on the search path.
+        return if python.components().count() > 1 && !python.exists() {
+            let message = format!("{OVERRIDE} names {}, which is not there", python.display());
+            Err(Diagnostic::error(message).because(Cause::System))
+        } else {
+            Ok(python)
+        };
     }
     let folder = cache()?.join("ajar").join(NAME);
     let python = folder.join(PYTHON);
@@ -53,16 +59,21 @@ fn override_hint() -> String {
 /// Makes the environment beside its place and moves it there: what is there is complete, also when two make it.
 fn make(folder: &Path) -> Result<(), Diagnostic> {
     let begun = folder.with_extension(format!("part-{}", process::id()));
-    let made = build(&begun).and_then(|()| match fs::rename(&begun, folder) {
-        Err(error) if !folder.join(PYTHON).exists() => Err(format!("{}: {error}", folder.display())),
-        _ => Ok(()),
+    let made = build(&begun).and_then(|()| {
+        // What is there without a Python is broken.
+        let broken = folder.exists() && !folder.join(PYTHON).exists();
+        let cleared = if broken { fs::remove_dir_all(folder) } else { Ok(()) };
+        match cleared.and_then(|()| fs::rename(&begun, folder)) {
+            Err(error) if !folder.join(PYTHON).exists() => Err(format!("{}: {error}", folder.display())),
+            _ => Ok(()),
+        }
     });
     // Left only by a failure, or where another process was first.
     let _ = fs::remove_dir_all(&begun);
     made.map_err(|why| {
         let message = format!("the Python environment that USD files need cannot be made: {why}");
         Diagnostic::error(message).because(Cause::System).hint(format!(
-            "with a network, run: {}\n    or: {}",
+            "with a network and Python 3.11 to 3.14, run: {}\n    or: {}",
             by_hand(folder),
             override_hint()
         ))

@@ -18,11 +18,12 @@ const SCENE: [(&str, &str); 6] = [
 ];
 
 /// What textures may be; the bytes of a file decide, not its name.
-const IMAGES: [(&str, &str); 6] = [
+const IMAGES: [(&str, &str); 7] = [
     ("PNG", "8 and 16 bits a channel"),
     ("JPEG", "baseline and progressive"),
     ("WebP", "lossy and lossless"),
     ("TIFF", "8 and 16 bits, 32-bit floats"),
+    ("TGA, BMP", "8 bits a channel"),
     ("Radiance HDR", "RGBE"),
     ("OpenEXR", "half, float; flat images"),
 ];

@@ -10,7 +10,7 @@ use super::render::Args;
 use crate::{
     checkpoint::Saved,
     image::{Aov, Destination, Form},
-    session::{self, DEFAULT_SIZE, Loaded},
+    session::{self, Loaded},
     shard::Shard,
 };
 
@@ -42,7 +42,7 @@ impl Job {
         let (render, output) = (&loaded.file.render, &loaded.file.output);
         let name = args.integrator.as_deref().or(render.integrator.as_deref()).unwrap_or("ajar");
         let integrator = find_integrator(name)?;
-        let size = args.size.or(render.size).unwrap_or(DEFAULT_SIZE);
+        let size = session::film_size(args.size, &loaded.file, args.camera.as_deref());
         let max_depth = args.max_depth.or(render.max_depth).unwrap_or(DEFAULT_DEPTH) as usize;
         if max_depth > integrator.max_depth() {
             let most = integrator.max_depth();

@@ -38,8 +38,8 @@ pub(super) struct Args {
     pub output: Option<PathBuf>,
     /// Camera to look through [default: the first]
     #[arg(long, value_name = "NAME")]
-    camera: Option<String>,
-    /// Film size in pixels [default: 1280x720]
+    pub camera: Option<String>,
+    /// Film size in pixels [default: 1280 wide, in the shape of the camera, else 1280x720]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
     /// How to render: ajar, mlt, bdpt or path [default: ajar]

@@ -60,7 +60,8 @@ pub struct Connection {
 
 impl Camera {
     /// Places `camera` by `to_world` (its scale is ignored) before a film of `width` × `height` pixels. The vertical
-    /// extent of the view is kept, whatever shape the film has.
+    /// extent of the view is kept, but where the film is narrower than the view was composed for: there it grows until
+    /// the composed width is seen.
     pub fn new(camera: &scene::Camera, to_world: &DAffine3, width: u32, height: u32) -> Self {
         let z = to_world.transform_vector3(DVec3::Z).normalize_or(DVec3::Z);
         let y = to_world.transform_vector3(DVec3::Y);
@@ -79,14 +80,16 @@ impl Camera {
                 (f64::from(half_height), [0.0; 2], Lens::Parallel)
             }
         };
+        let narrow = camera.aspect.map_or(1.0, |composed| (f64::from(composed) / aspect).max(1.0));
+        let (visible, centre) = (half_height * narrow, shift.map(|it| f64::from(it) * half_height));
         Self {
             width,
             height,
             exposure: camera.exposure.into(),
             origin: to_world.translation,
             frame: Frame { x, y: z.cross(x), z },
-            half: DVec2::new(half_height * aspect, half_height),
-            centre: DVec2::new(f64::from(shift[0]), f64::from(shift[1])) * half_height,
+            half: DVec2::new(visible * aspect, visible),
+            centre: DVec2::from(centre),
             lens,
         }
     }
@@ -230,6 +233,26 @@ mod tests {
                 assert!((back.direction + ray.direction).length() < 1e-12);
             }
         }
+    }
+
+    #[test]
+    fn a_film_of_another_shape_shows_all_that_was_composed() {
+        let projection = scene::Projection::Perspective {
+            yfov: 0.9,
+            lens_radius: 0.0,
+            focus_distance: 1.0,
+            shift: [0.0; 2],
+        };
+        let camera = scene::Camera { name: String::new(), projection, aspect: Some(2.0), exposure: 1.0 };
+        let shown = |width, height| {
+            let camera = Camera::new(&camera, &DAffine3::IDENTITY, width, height);
+            let corner = camera.ray(DVec2::ZERO, [0.5; 2]).direction;
+            (corner / -corner.z).truncate().abs()
+        };
+        let composed = DVec2::new(2.0, 1.0) * 0.45_f64.tan();
+        assert!((shown(64, 32) - composed).length() < 1e-7);
+        assert!((shown(32, 32) - composed.x).length() < 1e-7, "a narrow film shows the width");
+        assert!((shown(96, 32) - DVec2::new(1.5 * composed.x, composed.y)).length() < 1e-7);
     }
 
     #[test]

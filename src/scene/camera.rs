@@ -9,7 +9,8 @@ pub struct Camera {
     pub name: String,
     /// Kind and field of view.
     pub projection: Projection,
-    /// Width over height that the view was composed for; the film's own shape wins, with the vertical extent kept.
+    /// Width over height that the view was composed for. A film of another shape shows more, never less; without it the
+    /// vertical extent is kept.
     pub aspect: Option<f32>,
     /// Multiplies everything that the film receives.
     pub exposure: f32,

@@ -25,6 +25,7 @@ mod texture;
 mod validate;
 
 pub use arena::{Arena, Id};
+pub use bounds::looking;
 pub use camera::{Camera, Projection};
 pub use defaults::framing_camera;
 pub use diagnostic::{Cause, Diagnostic, Loss, Severity};

@@ -14,3 +14,5 @@ mod resume;
 mod set;
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod usd_environment;

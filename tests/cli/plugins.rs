@@ -43,6 +43,20 @@ fn a_plug_in_is_found_by_first_bytes() {
 }
 
 #[test]
+fn the_users_settings_name_programs_too() {
+    let bench = importing(&format!("cat << END\n{SCENE}\nEND"));
+    fs::rename(bench.path("bin/ajar-import-toy"), bench.path("toys.sh")).unwrap();
+    let configured = |text: &str| {
+        bench.write("config/ajar/config.toml", text);
+        let config = bench.path("config").display().to_string();
+        bench.run_with("inspect a.toy", &[("XDG_CONFIG_HOME", &config)])
+    };
+    configured("[plugins]\ntoy = \"../../toys.sh\"\n").exits(0).prints(&["leaf"]);
+    configured("[plugins]\ntoy = 3\n").exits(1).says(&["config.toml: error: is malformed"]);
+    configured("").exits(3).says(&["is of no known format"]);
+}
+
+#[test]
 fn a_plug_in_may_answer_with_a_glb() {
     let bench = importing("cat leaf.glb");
     let json = fs::read(bench.path("leaf.gltf")).unwrap();
@@ -124,6 +138,8 @@ fn one_that_hangs_is_stopped() {
     let began = Instant::now();
     let hint = "AJAR_PLUGIN_TIMEOUT sets the seconds";
     run(&importing("exec sleep 600"), "validate a.toy").exits(3).says(&["it said nothing for 1 s", hint]);
+    let closed = "exec 1>&- 2>&-; exec sleep 600";
+    run(&importing(closed), "validate a.toy").exits(3).says(&["it said nothing for 1 s"]);
     // One that is alive may take longer.
     let patient = importing(&format!(
         "for i in 1 2 3 4; do sleep 0.5; echo '{{\"progress\": \"…\"}}' >&2; done; cat << END\n{SCENE}\nEND"

@@ -69,6 +69,7 @@ def run(asset: Asset, how: How) -> Result:
     if code == 0:
         exr = how.output / (asset.name.replace("/", "_") + ".exr")
         size = ["--size", f"{how.size}x{how.size}", "--spp", str(how.spp), "--threads", str(how.threads)]
+        size += ["--integrator", "path"]
         result.code, _ = call([how.ajar, "render", *place, "-o", str(exr), "--quiet", *size])
         result.render_time = time.perf_counter() - started - result.import_time
         result.picture = exr.with_suffix(".png") if result.code == 0 else None

@@ -100,7 +100,7 @@ fn units_and_axes_are_those_of_the_root_layer() {
     let (low, high) = bounds(&imported.scene);
     // 4 units along the stage's Z are 2 m up; what was along its Y goes to −Z.
     assert!(near(low, Vec3::new(0.0, 2.0, -0.5)) && near(high, Vec3::new(0.5, 2.0, 0.0)), "{low} {high}");
-    assert!(warnings(&imported)[0].contains("square.usda is made in units of 1 m"));
+    assert!(warnings(&imported)[0].contains("square.usda: made in units of 1 m"));
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod geometry;
 mod hostile;
 mod lights;
 mod materials;
+mod skinning;
 
 use std::fs;
 

@@ -258,3 +258,36 @@ fn what_cannot_be_read_is_named() {
     assert!(warnings(&imported)[0].contains("the file none.png is not there"), "{:?}", warnings(&imported));
     assert!(imported.files.iter().any(|file| file.ends_with("none.png")), "it is looked for");
 }
+
+#[test]
+fn instances_and_variants_bring_materialx_files() {
+    if !can_run() {
+        return;
+    }
+    let paint = r#"<?xml version="1.0"?><materialx version="1.38">
+        <open_pbr_surface name="S" type="surfaceshader"><input name="base_color" type="color3" value="0.5, 0.25, 0.125"/>
+        </open_pbr_surface><surfacematerial name="Red" type="material">
+        <input name="surfaceshader" type="surfaceshader" nodename="S"/></surfacematerial></materialx>"#;
+    let prims = r#"
+def Xform "Proto" {
+    def "Paint" (references = @paint.mtlx@</MaterialX/Materials>) {}
+    def Sphere "Ball" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+        rel material:binding = </Proto/Paint/Red>
+    }
+}
+def "A" (
+    instanceable = true
+    references = </Proto>) {}
+def "B" (
+    prepend variantSets = "look"
+    variants = { string look = "red" }
+    references = </Proto>) {
+    variantSet "look" = { "red" { over "Paint" (payload = @paint.mtlx@</MaterialX>) {} } }
+}
+def Sphere "Lost" (prepend apiSchemas = ["MaterialBindingAPI"]) { rel material:binding = </Nowhere> }
+"#;
+    let imported = Stage::new(prims).with("paint.mtlx", paint).scene();
+    assert_eq!(warnings(&imported), ["/Lost: the bound material /Nowhere is not there"]);
+    let red = |m: &&Material| (m.base_color.value - Vec3::new(0.5, 0.25, 0.125)).length() < 1e-6;
+    assert_eq!(imported.scene.materials.iter().filter(red).count(), 3, "of the prototype, A and B");
+}

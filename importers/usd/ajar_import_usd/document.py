@@ -43,7 +43,7 @@ class Document:
         self.memory_limit = memory_limit
         self.lists: dict[str, list[dict[str, Any]]] = {}
         self.render: dict[str, Any] = {}
-        self.chunk: list[bytes] = []
+        self.chunk: list[bytes | memoryview] = []
         self.size = 0
 
     def add(self, kind: str, item: dict[str, Any]) -> int:
@@ -59,13 +59,13 @@ class Document:
     def array(self, values: np.ndarray | Sequence[Any], width: int = 1, dtype: str = "<f4") -> dict[str, int]:
         """Puts items of `width` numbers into the binary chunk."""
         data = np.ascontiguousarray(np.asarray(values, dtype=dtype).reshape(-1))
-        return self.bytes(data.tobytes(), len(data) // width)
+        return self.bytes(data.view(np.uint8).data, len(data) // width)
 
     def indices(self, values: np.ndarray | Sequence[Any], width: int = 1) -> dict[str, int]:
         """Puts unsigned integers into the binary chunk."""
         return self.array(values, width, "<u4")
 
-    def bytes(self, data: bytes, count: int | None = None) -> dict[str, int]:
+    def bytes(self, data: bytes | memoryview, count: int | None = None) -> dict[str, int]:
         """Puts bytes into the binary chunk."""
         offset = self.size
         self.chunk += [data, bytes(-len(data) % 4)]

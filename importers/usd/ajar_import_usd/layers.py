@@ -39,8 +39,8 @@ class Jail:
         return path
 
 
-def check(file: Path, jail: Jail, memory_limit: int, report: Report) -> None:
-    """Follows all layers from `file`, those of variants and payloads too.
+def check(file: Path, jail: Jail, memory_limit: int, report: Report) -> list[Any]:
+    """Follows all layers from `file`, those of variants and payloads too, and returns them.
 
     Raises a failure where one lies outside the jail, is a package that cannot be trusted, or where references multiply
     beyond memory.
@@ -54,6 +54,7 @@ def check(file: Path, jail: Jail, memory_limit: int, report: Report) -> None:
     visited = Visited(jail, memory_limit // PRIM_SIZE, report)
     visited.layer(str(file.resolve()), None)
     visited.count()
+    return [layer for layer in visited.layers.values() if layer]
 
 
 class Visited:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pxr import Gf, Usd, UsdLux
 
+from . import mesh
 from .document import Node
 
 if TYPE_CHECKING:
@@ -209,9 +210,8 @@ class Lamp:
 
     def glowing_mesh(self, node: Node) -> None:
         """A mesh with MeshLightAPI glows instead of reflecting."""
-        color = [c * self.strength for c in self.color]
-        if self.normalizes:
-            self.warn("normalize of a mesh light is ignored")
+        area = mesh.area(self.walk, self.prim, self.stretch()) if self.normalizes else 1.0
+        color = [c * self.divided(area) for c in self.color]
         mode = UsdLux.LightAPI(self.prim).GetMaterialSyncModeAttr().Get()
         if mode != UsdLux.Tokens.noMaterialResponse:
             self.approximate(f"a mesh light with materialSyncMode {mode!r} glows alike everywhere and reflects nothing")

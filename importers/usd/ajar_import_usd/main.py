@@ -7,9 +7,12 @@ import json
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from .document import Document
 from .report import Report, StageError
+
+if TYPE_CHECKING:
+    from .document import Document
 
 EXTENSIONS = ["usd", "usda", "usdc", "usdz"]
 HEADS = [b"#usda", b"PXR-USDC"]
@@ -32,15 +35,19 @@ def arguments() -> argparse.Namespace:
 def convert(args: argparse.Namespace, report: Report) -> Document:
     """The scene that the file holds."""
     # Packages that are not there are told as an error, and --probe needs none of them.
-    from . import layers, stage, walk
+    from . import layers, mtlx, stage, walk
+    from .document import Document
 
     jail = layers.Jail(args.file, args.allow)
     with report.listening():
-        layers.check(args.file, jail, args.memory_limit, report)
+        found = layers.check(args.file, jail, args.memory_limit, report)
+        # Held until the stage is read.
+        held = [*found, *mtlx.resolve(found, report)]
         moment = stage.Moment(args.frame, args.seconds, args.fps)
-        opened = stage.open_stage(args.file, args.variant, moment, jail, report)
+        opened = stage.open_stage(args.file, args.variant, moment, report)
         document = Document(args.memory_limit)
         walk.Walk(opened, document, jail, report).run()
+        del held
     return document
 
 
@@ -66,7 +73,9 @@ def main() -> None:
         report.fail(failure)
         sys.exit(1)
     except ImportError as error:
-        report.fail(StageError(f"{error}; {sys.executable} lacks a package that USD files need", cause="system"))
+        hint = f"install it there; or remove {sys.prefix}, if Ajar made that, and it is made again"
+        message = f"{error}: {sys.executable} lacks a package that USD files need"
+        report.fail(StageError(message, hint=hint, cause="system"))
         sys.exit(1)
     except (MemoryError, RecursionError) as error:
         report.fail(StageError(f"the stage is too large: {type(error).__name__}", cause="resource"))

@@ -44,7 +44,17 @@ class Materials:
             material = api.ComputeBoundMaterial(purpose)[0]
             if material:
                 return str(material.GetPath())
+        self.name_what_is_missing(prim)
         return None
+
+    def name_what_is_missing(self, prim: Usd.Prim) -> None:
+        """Names a material that is bound to the prim or above it, and that is none."""
+        while prim:
+            path = UsdShade.MaterialBindingAPI(prim).GetDirectBinding().GetMaterialPath()
+            if path and not UsdShade.Material(self.stage.GetPrimAtPath(path)):
+                self.report.warn(prim.GetPath(), f"the bound material {path} is not there")
+                return
+            prim = prim.GetParent()
 
     def index(self, path: str) -> int:
         """The index of a material in the document."""

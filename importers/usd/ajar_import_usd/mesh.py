@@ -22,7 +22,7 @@ LINEAR = {
     "cornersPlus1": "corners",
     "cornersPlus2": "corners",
 }
-# Refined until there are so many faces, so that silhouettes look round.
+# Refined as long as there are at most so many faces, so that silhouettes look round.
 FINE = 16_384
 MOST_LEVELS = 5
 
@@ -35,6 +35,11 @@ class Topology:
     faces: np.ndarray
     corners: np.ndarray
     order: np.ndarray | None
+
+    @property
+    def is_triangles(self) -> bool:
+        """Whether all faces have three corners."""
+        return bool(self.faces.min() == self.faces.max() == 3)
 
     @property
     def sizes(self) -> primvars.Sizes:
@@ -71,13 +76,8 @@ def mesh(walk: Walk, prim: Usd.Prim, bound: str | None) -> list[int]:
 
 
 def geometry(walk: Walk, topology: Topology, name: str) -> dict[str, Any]:
-    """A mesh of the document with nothing but faces."""
-    return {
-        "name": name,
-        "positions": walk.document.array(topology.positions, 3),
-        "faces": walk.document.indices(topology.faces),
-        "corners": walk.document.indices(topology.corners),
-    }
+    """A mesh of the document with nothing but positions; `finish` adds the rest."""
+    return {"name": name, "positions": walk.document.array(topology.positions, 3)}
 
 
 def finish(
@@ -88,7 +88,7 @@ def finish(
     names: list[str | None],
     parents: np.ndarray | None = None,
 ) -> None:
-    """Adds material, and what the materials read: texture coordinates and colours.
+    """Adds material, and what the materials read, texture coordinates and colours; then the faces.
 
     `parents` names the point or curve that each position was made for: primvars belong to those.
     """
@@ -125,6 +125,23 @@ def finish(
     found = primvars.colors(walk, prim, shown, sizes) if shown else None
     if found:
         item["colors"] = fit(found)
+    add_faces(walk, topology, item)
+
+
+def add_faces(walk: Walk, topology: Topology, item: dict[str, Any]) -> None:
+    """Faces as triangles where they are and all attributes belong to positions, else as polygons."""
+    corners = walk.document.indices(topology.corners)
+    attributes = [item[key] for key in ("normals", "colors") if key in item] + item.get("uvs", [])
+    is_plain = not item.keys() & {"parts", "holes", "subdivision"} and all(
+        form["per"] == "position" and "indices" not in form for form in attributes
+    )
+    if not (is_plain and topology.is_triangles):
+        item |= {"faces": walk.document.indices(topology.faces), "corners": corners}
+        return
+    item["triangles"] = corners | {"count": corners["count"] // 3}
+    item |= {key: item[key]["values"] for key in ("normals", "colors") if key in item}
+    if "uvs" in item:
+        item["uvs"] = [form["values"] for form in item["uvs"]]
 
 
 def read_topology(walk: Walk, schema: UsdGeom.Mesh) -> Topology | None:
@@ -134,16 +151,17 @@ def read_topology(walk: Walk, schema: UsdGeom.Mesh) -> Topology | None:
         walk.report.warn(schema.GetPath(), f"the mesh is dropped: {why}")
 
     positions = np.array(schema.GetPointsAttr().Get(walk.time) or [], dtype=np.float32).reshape(-1, 3)
-    faces = np.array(schema.GetFaceVertexCountsAttr().Get(walk.time) or [], dtype=np.int64)
-    corners = np.array(schema.GetFaceVertexIndicesAttr().Get(walk.time) or [], dtype=np.int64)
+    faces = np.array(schema.GetFaceVertexCountsAttr().Get(walk.time) or [], dtype=np.int32)
+    corners = np.array(schema.GetFaceVertexIndicesAttr().Get(walk.time) or [], dtype=np.int32)
     if not len(positions) or not len(faces):
         dropped("it has no faces")
         return None
     if not np.all(np.isfinite(positions)):
         dropped("a position is not finite")
         return None
-    if faces.min() < 0 or faces.sum() != len(corners):
-        dropped(f"its faces have {faces.sum()} corners, there are {len(corners)}")
+    wanted = faces.sum(dtype=np.int64)
+    if faces.min() < 0 or wanted != len(corners):
+        dropped(f"its faces have {wanted} corners, there are {len(corners)}")
         return None
     if len(corners) and (corners.min() < 0 or corners.max() >= len(positions)):
         dropped(f"a corner is beyond its {len(positions)} points")
@@ -153,6 +171,22 @@ def read_topology(walk: Walk, schema: UsdGeom.Mesh) -> Topology | None:
         order = reversed_corners(faces)
         corners = corners[order]
     return Topology(positions, faces, corners, order)
+
+
+def area(walk: Walk, prim: Usd.Prim, to_stage: np.ndarray) -> float:
+    """Area of the faces of a mesh, not subdivided, in units of the stage; `to_stage` holds the images of X, Y, Z."""
+    topology = read_topology(walk, UsdGeom.Mesh(prim)) if prim.IsA(UsdGeom.Mesh) else None
+    if topology is None:
+        return 0.0
+    corners = topology.positions[topology.corners] @ to_stage
+    ends = np.cumsum(topology.faces)
+    starts = np.repeat(ends - topology.faces, topology.faces)
+    after = np.arange(len(corners)) + 1
+    after[ends[topology.faces > 0] - 1] = (ends - topology.faces)[topology.faces > 0]
+    crosses = np.cross(corners - corners[starts], corners[after] - corners[starts])
+    face = np.repeat(np.arange(len(topology.faces)), topology.faces)
+    sums = np.stack([np.bincount(face, crosses[:, axis], len(topology.faces)) for axis in range(3)], axis=1)
+    return float(np.linalg.norm(sums, axis=1).sum() / 2)
 
 
 def reversed_corners(faces: np.ndarray) -> np.ndarray:
@@ -202,7 +236,7 @@ def add_normals(walk: Walk, schema: UsdGeom.Mesh, topology: Topology, item: dict
 def subdivision(walk: Walk, schema: UsdGeom.Mesh, topology: Topology) -> dict[str, Any]:
     """Rules of refinement."""
     levels = 1
-    while len(topology.faces) * 4**levels < FINE and levels < MOST_LEVELS:
+    while len(topology.faces) * 4 ** (levels + 1) <= FINE and levels < MOST_LEVELS:
         levels += 1
     boundary = schema.GetInterpolateBoundaryAttr().Get(walk.time)
     linear = schema.GetFaceVaryingLinearInterpolationAttr().Get(walk.time)

@@ -1,15 +1,14 @@
-"""MaterialX files: usd-core cannot read them, so what prims reference in them is written into the session layer."""
+"""MaterialX files: usd-core cannot read them, so prims reference layers that are made of them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import MaterialX as mx
 from pxr import Sdf, Usd, UsdShade
 
-from .layers import Jail
 from .report import Report
 
 TYPES = {
@@ -28,38 +27,71 @@ TYPES = {
 }
 
 
-def resolve(stage: Usd.Stage, jail: Jail, report: Report) -> None:
-    """Writes materials below every prim that references a `.mtlx` file, at UsdMtlx's paths: /MaterialX/Materials."""
-    documents: dict[str, Any] = {}
-    for prim in list(Usd.PrimRange.Stage(stage, Usd.PrimAllPrimsPredicate)):
-        for path, target in references(prim):
-            jail.check(path, str(prim.GetPath()))
-            if path not in documents:
-                documents[path] = read(path, prim, report)
-            if documents[path]:
-                Writer(stage, Path(path), documents[path]).write(prim.GetPath(), str(target or "/MaterialX"))
+def resolve(layers: Iterable[Any], report: Report) -> list[Any]:
+    """Lets prims reference layers of the same content in place of `.mtlx` files; only in memory, nothing is saved.
+
+    Returns those layers: they are there as long as somebody holds them.
+    """
+    made: dict[str, Any] = {}
+
+    def visit(layer: Any, path: Any) -> None:
+        spec = layer.GetObjectAtPath(path)
+        spec = spec.primSpec if isinstance(spec, Sdf.VariantSpec) else spec
+        if not isinstance(spec, Sdf.PrimSpec):
+            return
+        for key in ("references", "payload"):
+            items = spec.GetInfo(key) if spec.HasInfo(key) else None
+            if items and any(is_materialx(item) for item in items.GetAddedOrExplicitItems()):
+                added = ["prependedItems", "appendedItems", "addedItems"]
+                for field in ["explicitItems"] if items.isExplicit else added:
+                    setattr(items, field, [replaced(layer, item, path) for item in getattr(items, field)])
+                spec.SetInfo(key, items)
+
+    def replaced(layer: Any, item: Any, place: Any) -> Any:
+        if not is_materialx(item):
+            return item
+        path = str(Sdf.ComputeAssetPathRelativeToLayer(layer, item.assetPath))
+        if path not in made:
+            made[path] = converted(path, place, report)
+        return type(item)(made[path].identifier, item.primPath, item.layerOffset)
+
+    for layer in layers:
+        layer.Traverse(Sdf.Path.absoluteRootPath, partial(visit, layer))
+    return list(made.values())
 
 
-def references(prim: Usd.Prim) -> Iterator[tuple[str, Any]]:
-    """The MaterialX files that a prim references, and the path of what it wants of each."""
-    for spec in prim.GetPrimStack():
-        for items in (spec.referenceList, spec.payloadList):
-            for item in [*items.explicitItems, *items.prependedItems, *items.appendedItems, *items.addedItems]:
-                if item.assetPath.lower().endswith(".mtlx"):
-                    yield str(Sdf.ComputeAssetPathRelativeToLayer(spec.layer, item.assetPath)), item.primPath
+def is_materialx(item: Any) -> bool:
+    """Whether a reference or payload is of a MaterialX file."""
+    return bool(item.assetPath.lower().endswith(".mtlx"))
 
 
-def read(path: str, prim: Usd.Prim, report: Report) -> Any:
+def converted(path: str, place: Any, report: Report) -> Any:
+    """A layer with the materials of a file at UsdMtlx's paths, /MaterialX/Materials; none if it cannot be read."""
+    layer = Sdf.Layer.CreateAnonymous(f"{Path(path).name}.usda")
+    stage = Usd.Stage.Open(layer)
+    stage.SetDefaultPrim(stage.DefinePrim("/MaterialX"))
+    document = read(path, place, report)
+    if document:
+        writer = Writer(stage, Path(path), document)
+        for material in document.getMaterialNodes():
+            writer.material(material, Sdf.Path("/MaterialX/Materials").AppendChild(material.getName()))
+    return layer
+
+
+def read(path: str, place: Any, report: Report) -> Any:
     """The document, or None with a warning. What it includes is not read."""
-    report.file(path)
+    # Read by few stages, and slow to load.
+    import MaterialX as mx
+
     document = mx.createDocument()
     try:
-        mx.readFromXmlString(document, Path(path).read_text("utf-8"))
+        text = Path(path).read_text("utf-8")
+        mx.readFromXmlString(document, text)
     except (OSError, UnicodeDecodeError, mx.Exception) as error:
-        report.warn(prim.GetPath(), f"the MaterialX file cannot be read: {error}")
+        report.warn(place, f"the MaterialX file cannot be read: {error}")
         return None
-    if "<xi:include" in Path(path).read_text("utf-8"):
-        report.warn(prim.GetPath(), "files that a MaterialX file includes are not read")
+    if "<xi:include" in text:
+        report.warn(place, "files that a MaterialX file includes are not read")
     return document
 
 
@@ -68,18 +100,6 @@ class Writer:
 
     def __init__(self, stage: Usd.Stage, path: Path, document: Any) -> None:
         self.stage, self.folder, self.document = stage, path.parent, document
-
-    def write(self, at: Sdf.Path, target: str) -> None:
-        """Writes what `target` names: all, the folder of materials, or one of them."""
-        name = target.removeprefix("/MaterialX").removeprefix("/Materials").strip("/")
-        for material in self.document.getMaterialNodes():
-            if name and material.getName() != name:
-                continue
-            below = at
-            if not name:
-                below = at if target.endswith("/Materials") else at.AppendChild("Materials")
-                below = below.AppendChild(material.getName())
-            self.material(material, below)
 
     def material(self, material: Any, path: Sdf.Path) -> None:
         """A material and all nodes of the document that it reads."""

@@ -16,6 +16,11 @@ NOISE = re.compile(r" \([a-z ]+ on stage @[^@]*@ <0x[0-9a-f]+>\)")
 # "Warning: in Function at line 3 of /some/file.cpp -- the message", as usd-core prints it.
 USD_LINE = re.compile(r"^(?:Warning|Error|Coding Error|Runtime Error)[^:]*: in \S+ at line \d+ of \S+ -- (.*)$")
 
+# "In </World/Cube>: Could not open …", what says so, and folders of layers.
+PLACED = re.compile(r"^In <([^>]*)>: (.*)$")
+INTRODUCED = re.compile(r" introduced by @[^@]*@(<[^>]*>)?\.?$")
+FOLDER = re.compile(r"@/[^@]*/(?=[^@/]+@)")
+
 
 class StageError(Exception):
     """The import cannot go on. `cause` is what has to change: asset, usage, resource or system."""
@@ -103,6 +108,8 @@ class Report:
         line = NOISE.sub("", line)
         match = USD_LINE.match(line)
         if match:
-            self.warn(None, f"usd-core: {match[1]}")
+            message = FOLDER.sub("@", INTRODUCED.sub("", match[1]))
+            placed = PLACED.match(message)
+            self.warn(placed and placed[1], f"usd-core: {placed[2] if placed else message}")
         elif line:
             self.note(None, f"usd-core: {line}")

@@ -40,6 +40,10 @@ def take(walk: Walk, prim: Usd.Prim) -> None:
             walk.document.render["size"] = [int(width), int(height)]
         else:
             walk.report.warn(prim.GetPath(), f"a resolution of {width} × {height} is ignored")
+    for attribute, whole in ((base.GetDataWindowNDCAttr(), (0, 0, 1, 1)), (base.GetPixelAspectRatioAttr(), 1)):
+        value = attribute.Get(walk.time)
+        if value is not None and value != whole:
+            walk.report.warn(prim.GetPath(), f"{attribute.GetName()} is ignored")
     for path in base.GetCameraRel().GetForwardedTargets()[:1]:
         name = walk.cameras.get(path)
         if name is None:

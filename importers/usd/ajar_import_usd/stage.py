@@ -9,9 +9,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdSkel
 
-from . import mtlx
 from .document import Matrix
-from .layers import Jail
 from .report import Report, StageError, commentary
 
 DEFAULT_RATE = 24.0
@@ -47,14 +45,13 @@ class Moment:
     rate: float | None = None
 
 
-def open_stage(file: Path, variants: list[str], moment: Moment, jail: Jail, report: Report) -> Opened:
+def open_stage(file: Path, variants: list[str], moment: Moment, report: Report) -> Opened:
     """Composes the stage in `file`."""
     try:
         stage = Usd.Stage.Open(str(file))
     except Tf.ErrorException as error:
         raise StageError(f"is no USD that can be read: {commentary(error)}") from error
     stage.SetEditTarget(stage.GetSessionLayer())
-    mtlx.resolve(stage, jail, report)
     for variant in variants:
         select(stage, variant)
     time = time_code(stage, moment, report)
@@ -123,9 +120,8 @@ def unit(stage: Usd.Stage, report: Report) -> float:
         other = layer.pseudoRoot.GetInfo(UsdGeom.Tokens.metersPerUnit)
         if layer.pseudoRoot.HasInfo(UsdGeom.Tokens.metersPerUnit) and not math.isclose(other, metres, rel_tol=1e-6):
             name = Path(layer.realPath or layer.identifier).name
-            report.approximate(
-                None, f"{name} is made in units of {other:g} m, the scene in {metres:g} m; USD does not rescale"
-            )
+            message = f"made in units of {other:g} m, the scene in {metres:g} m; USD does not rescale"
+            report.approximate(name, message)
     return metres
 
 
@@ -150,5 +146,19 @@ def bake_skins(stage: Usd.Stage, time: Usd.TimeCode) -> None:
             prim = stage.GetPrimAtPath(path)
             if prim.IsInstance():
                 prim.SetInstanceable(False)
+    for prim in stage.Traverse():
+        # Many files do not say that the schema is applied.
+        if prim.IsA(UsdGeom.PointBased) and UsdSkel.BindingAPI(prim).GetJointIndicesPrimvar().HasValue():
+            move_normals(prim, time)
     value = time.GetValue() if time.IsNumeric() else 0.0
     UsdSkel.BakeSkinning(Usd.PrimRange(stage.GetPseudoRoot()), Gf.Interval(value, value))
+
+
+def move_normals(prim: Usd.Prim, time: Usd.TimeCode) -> None:
+    """Makes the primvar `normals` the attribute, for skinning bends that and leaves the primvar, which would count."""
+    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar("normals")
+    if primvar and primvar.HasValue():
+        shape = UsdGeom.PointBased(prim)
+        shape.CreateNormalsAttr(primvar.ComputeFlattened(time))
+        shape.SetNormalsInterpolation(primvar.GetInterpolation())
+        primvar.GetAttr().Block()

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from .surface import Surface
-from .terms import Term, UnsupportedError, constant, is_constant, mixed, numbers
+from .terms import Term, UnsupportedError, constant, is_constant, mixed, numbers, product
 
 WHITE = (1.0, 1.0, 1.0)
 
@@ -30,19 +30,19 @@ def preview_surface(s: Surface) -> None:
 
 
 def specular_workflow(s: Surface) -> None:
-    """A reflectance at normal incidence in place of metalness and ior."""
+    """A reflectance at normal incidence in place of metalness and ior: an index for the brightest, and a tint.
+
+    The index is one for all texels, so that reflection towards grazing is Schlick's where an image is dark.
+    """
     color = s.term("specularColor", (0.0,) * 3)
-    if not is_constant(color):
-        s.warn("an image of 'specularColor' is ignored; reflections have that of the ior")
-        return
-    values = (numbers(color) * 3)[:3]
-    strongest = min(max(values), 0.99)
+    values = [c.bias if c.source is None else c.scale + c.bias for c in (color * 3)[:3]]
+    strongest = max(values)
     if strongest <= 0:
         s.item["specular"] = 0.0
         return
-    root = math.sqrt(strongest)
+    root = math.sqrt(min(strongest, 0.99))
     s.item["ior"] = (1 + root) / (1 - root)
-    s.set_color("specular_color", constant([v / max(values) for v in values]))
+    s.set_color("specular_color", product(color, constant(1 / strongest)))
 
 
 def preview_opacity(s: Surface) -> None:

@@ -10,7 +10,7 @@ use std::{
 };
 
 use ajar_scene::{Cause, Diagnostic, Image, ImageSource};
-use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use super::{Bitmap, Texels, exr};
 
@@ -128,11 +128,21 @@ fn open(source: &ImageSource) -> Result<Box<dyn Input>, String> {
 }
 
 fn reader(input: Box<dyn Input>) -> Result<ImageReader<Box<dyn Input>>, String> {
-    let reader = ImageReader::new(input).with_guessed_format().map_err(|e| e.to_string())?;
+    let mut input = input;
+    let is_targa = is_targa(input.fill_buf().map_err(|e| e.to_string())?);
+    let mut reader = ImageReader::new(input).with_guessed_format().map_err(|e| e.to_string())?;
+    if reader.format().is_none() && is_targa {
+        reader.set_format(ImageFormat::Tga);
+    }
     if reader.format().is_none() {
-        return Err("is not a PNG, JPEG, WebP, TIFF, Radiance HDR or OpenEXR file".into());
+        return Err("is not a PNG, JPEG, WebP, TIFF, TGA, BMP, Radiance HDR or OpenEXR file".into());
     }
     Ok(reader)
+}
+
+/// Whether a file may be a Truevision TGA, which has no magic number: kind of colour map, kind of image, bits a pixel.
+fn is_targa(head: &[u8]) -> bool {
+    matches!(head, [_, 0 | 1, 1..=3 | 9..=11, _, _, _, _, _, _, _, _, _, _, _, _, _, 8 | 16 | 24 | 32, _, ..])
 }
 
 fn read(input: Box<dyn Input>, memory_limit: u64) -> Result<Bitmap, String> {

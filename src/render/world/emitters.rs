@@ -45,8 +45,9 @@ impl Surrounding {
 pub(super) fn emitters(world: &mut World, sphere: (DVec3, f64), previous: Option<&World>) -> Lights {
     let mut dirac = Vec::new();
     let mut surroundings = Vec::new();
-    for placed in world.scene.placed().into_iter().filter(|p| p.visible) {
-        let Some(light) = placed.node.light.map(|id| &world.scene.lights[id]) else { continue };
+    let scene = Arc::clone(&world.scene);
+    for placed in scene.placed().into_iter().filter(|p| p.visible) {
+        let Some(light) = placed.node.light.map(|id| &scene.lights[id]) else { continue };
         add_light(light, &placed.world, &world.textures, &mut dirac, &mut surroundings);
     }
     world.surroundings = surroundings;

@@ -47,17 +47,17 @@ pub struct Instance {
     pub first_emitter: Option<u32>,
 }
 
-/// A scene prepared for rendering.
-#[derive(Debug)]
+/// A scene prepared for rendering. Clones share what is large.
+#[derive(Clone, Debug)]
 pub struct World {
     /// Camera with film.
     pub camera: Camera,
     /// Emitters.
-    pub lights: Lights,
+    pub lights: Arc<Lights>,
     /// Length below which an edge carries no light, metres.
     pub shortest_edge: f64,
     /// The scene, its lights with a shape turned into meshes.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     geometry: Arc<Geometry>,
     instances: Vec<Instance>,
     /// Meshes of the scene from this number on are the shapes of lights.
@@ -74,6 +74,17 @@ pub struct World {
 }
 
 impl World {
+    /// The same, seen by another camera. `None` if there is nothing in it: then all that it knows of sizes is the camera.
+    pub fn seen_by(
+        &self,
+        camera: &ajar_scene::Camera,
+        to_world: &DAffine3,
+        [width, height]: [u32; 2],
+    ) -> Option<Self> {
+        let camera = Camera::new(camera, to_world, width, height);
+        (!self.instances.is_empty()).then(|| Self { camera, ..self.clone() })
+    }
+
     /// The meshes placed in it.
     pub fn instances(&self) -> &[Instance] {
         &self.instances

@@ -16,7 +16,7 @@ use super::{
 use crate::{
     bvh::{self, Geometry, InstanceGeometry, MeshGeometry},
     camera,
-    light::{Lights, tessellate},
+    light::tessellate,
     material,
     texture::{LoadedBefore, load_textures},
 };
@@ -71,12 +71,12 @@ pub fn prepare_after(
     };
     let mut world = World {
         camera,
-        lights: Lights::default(),
+        lights: Arc::default(),
         shortest_edge: 0.0,
         has_alpha: uses(material::Material::has_alpha),
         has_culling: uses(material::Material::cull_back),
         has_absorption: uses(|m| m.absorption().is_some()),
-        scene,
+        scene: Arc::new(scene),
         geometry,
         instances,
         solids,
@@ -88,7 +88,7 @@ pub fn prepare_after(
     let sphere = world.bounding_sphere();
     // Closer neighbours carry no light: it keeps 1/r² in corners finite, far below what a pixel shows.
     world.shortest_edge = 1e-7 * sphere.1;
-    world.lights = emitters(&mut world, sphere, old);
+    world.lights = Arc::new(emitters(&mut world, sphere, old));
     Ok((world, diagnostics))
 }
 

@@ -6,7 +6,7 @@ use ::exr::prelude::{
 };
 use glam::Vec4;
 use half::f16;
-use image::{DynamicImage, ImageBuffer, ImageFormat, codecs::hdr::HdrEncoder};
+use image::{DynamicImage, ImageBuffer, codecs::hdr::HdrEncoder};
 
 use super::*;
 
@@ -43,10 +43,22 @@ fn eight_bits(channels: u8) -> DynamicImage {
 
 #[test]
 fn lossless_eight_bit_images_keep_their_bytes() {
-    use ImageFormat::{Png, Tiff, WebP};
-    for (format, channels) in
-        [(Png, 1), (Png, 2), (Png, 3), (Png, 4), (Tiff, 1), (Tiff, 3), (Tiff, 4), (WebP, 3), (WebP, 4)]
-    {
+    use ImageFormat::{Bmp, Png, Tga, Tiff, WebP};
+    for (format, channels) in [
+        (Png, 1),
+        (Png, 2),
+        (Png, 3),
+        (Png, 4),
+        (Tiff, 1),
+        (Tiff, 3),
+        (Tiff, 4),
+        (WebP, 3),
+        (WebP, 4),
+        (Bmp, 3),
+        (Tga, 1),
+        (Tga, 3),
+        (Tga, 4),
+    ] {
         let image = eight_bits(channels);
         let b = bitmap(encode(&image, format));
         assert_eq!((b.width(), b.height(), b.channels()), (3, 2, usize::from(channels)), "{format:?}");

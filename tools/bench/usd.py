@@ -1,0 +1,93 @@
+"""How long a large USD stage takes to come through the importer, beside usd-core alone.
+
+    cargo build --release
+    .venv/bin/python tools/bench/usd.py target/release/ajar
+
+makes a binary stage of two million triangles with normals and texture coordinates, once with an attribute a point and
+once with one a corner, as many exporters write. It times a Python program that opens it and reads the same arrays, and
+`ajar validate`, which imports it and checks everything. Both take turns; the fastest of each counts.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from pxr import Sdf, Usd, UsdGeom, Vt
+
+MESHES, SIDE, TURNS = 4, 500, 7
+
+READER = """
+import sys
+import numpy as np
+from pxr import Usd, UsdGeom
+total = 0
+for prim in Usd.Stage.Open(sys.argv[1]).Traverse():
+    if prim.IsA(UsdGeom.Mesh):
+        mesh = UsdGeom.Mesh(prim)
+        attributes = [mesh.GetPointsAttr(), mesh.GetNormalsAttr(), mesh.GetFaceVertexCountsAttr(),
+                      mesh.GetFaceVertexIndicesAttr(), UsdGeom.PrimvarsAPI(prim).GetPrimvar("st").GetAttr()]
+        total += sum(np.array(attribute.Get()).nbytes for attribute in attributes)
+print(total)
+"""
+
+
+def grid():
+    """Points, normals and coordinates of a wavy sheet, and its triangles."""
+    x, z = np.meshgrid(np.linspace(0, 1, SIDE + 1), np.linspace(0, 1, SIDE + 1))
+    points = np.stack([x, 0.05 * np.sin(20 * x) * np.cos(17 * z), z], axis=-1).reshape(-1, 3)
+    slopes = np.stack([-np.cos(20 * x) * np.cos(17 * z), np.ones_like(x), 0.85 * np.sin(20 * x) * np.sin(17 * z)], -1)
+    normals = (slopes / np.linalg.norm(slopes, axis=-1, keepdims=True)).reshape(-1, 3)
+    a = (np.arange(SIDE)[:, None] * (SIDE + 1) + np.arange(SIDE)).reshape(-1)
+    b, c, d = a + 1, a + SIDE + 1, a + SIDE + 2
+    triangles = np.concatenate([np.stack([a, c, b], -1), np.stack([b, c, d], -1)])
+    return points, normals, np.stack([x, z], -1).reshape(-1, 2), triangles
+
+
+def write(path, interpolation):
+    """The stage."""
+    points, normals, uvs, triangles = (array.astype(kind) for array, kind in zip(grid(), "fffi"))
+    if interpolation == "faceVarying":
+        normals, uvs = normals[triangles.reshape(-1)], uvs[triangles.reshape(-1)]
+    stage = Usd.Stage.CreateNew(str(path))
+    UsdGeom.SetStageMetersPerUnit(stage, 1)
+    for index in range(MESHES):
+        mesh = UsdGeom.Mesh.Define(stage, f"/World/Sheet{index}")
+        mesh.AddTranslateOp().Set((index, 0, 0))
+        mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points + np.float32(index) * 1e-6))
+        mesh.CreateNormalsAttr(Vt.Vec3fArray.FromNumpy(normals))
+        mesh.SetNormalsInterpolation(interpolation)
+        mesh.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(triangles), 3, np.int32)))
+        mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(triangles.reshape(-1)))
+        mesh.CreateSubdivisionSchemeAttr("none")
+        primvar = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, interpolation)
+        primvar.Set(Vt.Vec2fArray.FromNumpy(uvs))
+    stage.Save()
+
+
+def seconds(command):
+    """Time of one run."""
+    started = time.perf_counter()
+    subprocess.run(command, check=True, capture_output=True, env=os.environ | {"AJAR_USD_PYTHON": sys.executable})
+    return time.perf_counter() - started
+
+
+def main(ajar):
+    with tempfile.TemporaryDirectory() as folder:
+        for interpolation in ("vertex", "faceVarying"):
+            stage = Path(folder) / f"{interpolation}.usdc"
+            write(stage, interpolation)
+            commands = [sys.executable, "-c", READER, stage], [ajar, "validate", stage]
+            times = np.array([[seconds(command) for command in commands] for _ in range(TURNS)])
+            alone, through = times.min(axis=0)
+            print(
+                f"{interpolation}: {stage.stat().st_size / 1e6:.0f} MB, usd-core alone {alone:.2f} s, "
+                f"through the importer {through:.2f} s, {through / alone:.2f} times"
+            )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
