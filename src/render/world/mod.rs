@@ -74,15 +74,10 @@ pub struct World {
 }
 
 impl World {
-    /// The same, seen by another camera. `None` if there is nothing in it: then all that it knows of sizes is the camera.
-    pub fn seen_by(
-        &self,
-        camera: &ajar_scene::Camera,
-        to_world: &DAffine3,
-        [width, height]: [u32; 2],
-    ) -> Option<Self> {
-        let camera = Camera::new(camera, to_world, width, height);
-        (!self.instances.is_empty()).then(|| Self { camera, ..self.clone() })
+    /// The same, seen by another camera.
+    pub fn seen_by(&self, camera: &ajar_scene::Camera, to_world: &DAffine3, size: [u32; 2]) -> Self {
+        let [width, height] = size;
+        Self { camera: Camera::new(camera, to_world, width, height), ..self.clone() }
     }
 
     /// The meshes placed in it.
