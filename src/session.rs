@@ -13,8 +13,8 @@ use ajar_integrators::{
 };
 use ajar_render::{World, film::Film, world::prepare};
 use ajar_scene::{
-    Camera, Cause, Choice, Diagnostic, Id, ImportRequest, OutputSettings, Overrides, Scene, SceneFile,
-    Severity,
+    Camera, Cause, Choice, Diagnostic, Id, ImportRequest, Imported, Looked, OutputSettings, Overrides, Scene,
+    SceneFile, Severity,
 };
 use glam::DAffine3;
 
@@ -49,6 +49,19 @@ pub struct LoadOptions<'a> {
     pub choice: &'a Choice,
 }
 
+/// Turns one file into a scene.
+pub type Import<'a> = dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic> + 'a;
+
+/// How files are read where that is not just once.
+pub struct Reading<'a> {
+    /// Path and text of a scene file that is not saved yet and lies over everything else.
+    pub draft: Option<(&'a Path, &'a str)>,
+    /// Notes the files that are looked for.
+    pub looked: Looked,
+    /// What importers are asked through.
+    pub import: &'a Import<'a>,
+}
+
 /// Reads any file that some importer knows, or a `scene.toml`, checks it, and adds a camera or light where it has none.
 ///
 /// # Errors
@@ -56,11 +69,16 @@ pub struct LoadOptions<'a> {
 pub fn load(path: &Path, options: &LoadOptions<'_>) -> Result<Loaded, Vec<Diagnostic>> {
     let mut file = open(path, options)?;
     let hash = file.scene.content_hash();
-    let [width, height] = film_size(options.size, &file, None).map(f64::from);
+    complete(path, options, &mut file);
+    Ok(Loaded { file, hash })
+}
+
+/// Adds a camera or light where there is none.
+pub fn complete(path: &Path, options: &LoadOptions<'_>, file: &mut SceneFile) {
+    let [width, height] = film_size(options.size, file, None).map(f64::from);
     let camera = file.scene.add_default_camera(width / height);
     let light = file.scene.add_default_light();
     file.diagnostics.extend(about(path, camera.into_iter().chain(light)));
-    Ok(Loaded { file, hash })
 }
 
 /// Reads and checks a file as it is.
@@ -68,21 +86,44 @@ pub fn load(path: &Path, options: &LoadOptions<'_>) -> Result<Loaded, Vec<Diagno
 /// # Errors
 /// Everything that makes it unfit to render.
 pub fn open(path: &Path, options: &LoadOptions<'_>) -> Result<SceneFile, Vec<Diagnostic>> {
+    let reading = Reading { draft: None, looked: Looked::default(), import: &ajar_importers::import };
+    open_as(path, options, &reading)
+}
+
+/// Whether the file is a scene file.
+pub fn is_scene_file(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+/// As [`open`], read this way.
+///
+/// # Errors
+/// Everything that makes it unfit to render.
+pub fn open_as(
+    path: &Path,
+    options: &LoadOptions<'_>,
+    reading: &Reading<'_>,
+) -> Result<SceneFile, Vec<Diagnostic>> {
     let memory_limit = options.memory_limit;
     let import = |request: &ImportRequest| {
         let choice = options.choice.or(&request.choice);
         let mut allowed = request.allowed.clone();
         allowed.extend_from_slice(options.allow);
-        ajar_importers::import(&ImportRequest { allowed, memory_limit, choice, ..request.clone() })
+        (reading.import)(&ImportRequest { allowed, memory_limit, choice, ..request.clone() })
     };
-    let overrides = Overrides::parse(options.set)?;
-    let request = ImportRequest { allowed: options.allow.to_vec(), ..ImportRequest::new(path) };
-    let mut file = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+    let mut overrides = Overrides::parse(options.set)?;
+    if let Some((path, text)) = reading.draft {
+        overrides = overrides.below(path, text)?;
+    }
+    let (allowed, looked) = (options.allow.to_vec(), reading.looked.clone());
+    let request = ImportRequest { allowed, looked, ..ImportRequest::new(path) };
+    let mut file = if is_scene_file(path) {
         whole(path, options.choice).map_err(|d| vec![d])?;
         ajar_scene::load(&request, &overrides, &import)?
     } else {
+        reading.looked.note(path);
         let imported = import(&request).map_err(|d| vec![d])?;
-        ajar_scene::load_asset(path, &overrides, imported)?
+        ajar_scene::load_asset(&request, &overrides, imported)?
     };
     let kept = kept(&file.scene, &file.diagnostics);
     file.diagnostics.extend(about(path, file.scene.validate().into_iter().chain([kept])));
@@ -145,7 +186,7 @@ pub fn choose_camera(scene: &Scene, name: Option<&str>) -> Result<(Id<Camera>, D
 /// Prepares a scene for a camera and film size.
 ///
 /// # Errors
-/// What cannot be prepared, with the way there.
+/// What cannot be prepared.
 pub fn prepare_world(
     scene: Scene,
     camera: (Id<Camera>, DAffine3),

@@ -75,6 +75,7 @@ impl Said {
 /// The import that the program's end tells.
 pub(super) fn imported(name: &str, end: End, request: &ImportRequest) -> Result<Imported, Diagnostic> {
     let mut said = Said::new(&end.messages);
+    said.files.iter().for_each(|file| request.looked.note(file));
     if let Some(error) = said.error {
         return Err(error.in_file(&request.path));
     }

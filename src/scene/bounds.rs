@@ -48,7 +48,7 @@ fn used_positions(mesh: &Mesh) -> Vec<Vec3> {
 
 /// The rigid motion to `position` that turns −Z along `forward` and +Y as near to `up` as it can; where `up` lies along
 /// `forward`, −Z of the world takes its place.
-pub(crate) fn looking(position: DVec3, forward: DVec3, up: DVec3) -> DAffine3 {
+pub fn looking(position: DVec3, forward: DVec3, up: DVec3) -> DAffine3 {
     let back = -forward.normalize_or(DVec3::NEG_Z);
     let right = up.cross(back);
     let right = if right.length() > 1e-9 * up.length() { right } else { DVec3::NEG_Z.cross(back) };

@@ -1,6 +1,10 @@
 //! The contract of importers: bytes below a folder become a [`Scene`], with a report of what was left out.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, PoisonError},
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +21,28 @@ pub struct ImportRequest {
     pub memory_limit: u64,
     /// What of the file is read, where it holds more than one still scene.
     pub choice: Choice,
+    /// Notes the files that are looked for.
+    pub looked: Looked,
+}
+
+/// Files that somebody looked for, by their absolute paths, whether they were there or not and whether reading them worked.
+/// Clones share the notes.
+#[derive(Clone, Debug, Default)]
+pub struct Looked(Arc<Mutex<BTreeSet<PathBuf>>>);
+
+impl Looked {
+    /// Notes a file.
+    pub fn note(&self, path: impl AsRef<Path>) {
+        let path = path.as_ref();
+        // Only an empty path has no absolute one.
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
+    }
+
+    /// Takes all notes.
+    pub fn take(&self) -> BTreeSet<PathBuf> {
+        std::mem::take(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
 }
 
 /// Frames per second where nothing says another number.
@@ -62,8 +88,13 @@ impl Choice {
 impl ImportRequest {
     /// A request with the defaults: only the file's own folder, 8 GiB, the rest pose.
     pub fn new(path: impl Into<PathBuf>) -> Self {
-        let choice = Choice::default();
-        Self { path: path.into(), allowed: Vec::new(), memory_limit: 8 << 30, choice }
+        Self {
+            path: path.into(),
+            allowed: Vec::new(),
+            memory_limit: 8 << 30,
+            choice: Choice::default(),
+            looked: Looked::default(),
+        }
     }
 
     /// For importers of formats that know no variants.
@@ -99,13 +130,13 @@ impl ImportRequest {
         if reference.contains("://") {
             return Err(refuse("is on the network; only files beside the scene are read"));
         }
-        let real = self
-            .folder()
-            .join(reference.replace('\\', "/"))
-            .canonicalize()
-            .map_err(|e| refuse(&format!("cannot be read: {e}")))?;
+        let file = self.folder().join(reference.replace('\\', "/"));
+        let found = file.canonicalize().map_err(|e| refuse(&format!("cannot be read: {e}")));
+        self.looked.note(&file);
+        let real = found?;
         let inside = |folder: &Path| folder.canonicalize().is_ok_and(|folder| real.starts_with(folder));
         if inside(self.folder()) || self.allowed.iter().any(|folder| inside(folder)) {
+            self.looked.note(&real);
             Ok(real)
         } else {
             Err(refuse("lies outside the scene's folder")

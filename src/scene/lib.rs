@@ -25,11 +25,12 @@ mod texture;
 mod validate;
 
 pub use arena::{Arena, Id};
+pub use bounds::looking;
 pub use camera::{Camera, Projection};
 pub use defaults::framing_camera;
 pub use diagnostic::{Cause, Diagnostic, Loss, Severity};
 pub use file::{Overrides, SCHEMA, SceneFile, Setting, load, load_asset};
-pub use import::{Choice, Feature, ImportRequest, Imported, Importer, Moment, Preference};
+pub use import::{Choice, Feature, ImportRequest, Imported, Importer, Looked, Moment, Preference};
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Channel, Input, Material, NormalMap, TextureInput};
 pub use mesh::Mesh;

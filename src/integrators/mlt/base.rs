@@ -138,6 +138,9 @@ pub fn render(
         .into_par_iter()
         .with_min_len(window.width() as usize)
         .map_init(Path::with_capacity, |path, pixel| {
+            if split.space.cancelled() {
+                return 0.0;
+            }
             let mut shares = Shares::new(split, pixel);
             for sample in settings.samples(round) {
                 trace(&split.space, settings.seed, pixel, sample, &mut shares);
@@ -166,6 +169,9 @@ pub fn means(space: &Space<'_>, settings: &Settings, round: u32) -> Vec<f64> {
     (0..space.window.pixels())
         .into_par_iter()
         .map(|pixel| {
+            if space.cancelled() {
+                return 0.0;
+            }
             let mut sum = Indirect(0.0);
             for sample in settings.samples(round) {
                 trace(space, settings.seed, pixel, sample, &mut sum);

@@ -15,6 +15,9 @@ use super::path::Space;
 pub fn render(space: &Space<'_>, (seed, round): (u64, u32), samples: u32, film: &RoundFilm) {
     let (window, world) = (space.window, space.world);
     (window.y0..window.y1).into_par_iter().for_each(|y| {
+        if space.cancelled() {
+            return;
+        }
         for x in window.x0..window.x1 {
             let pixel = u64::from(y) * u64::from(world.camera.width) + u64::from(x);
             let mut rng = Rng::new(seed, Purpose::Direct, round, pixel);

@@ -5,6 +5,8 @@
 //! chance, the opacities of all vertices and what all edges let through divided out as well. A technique that connects
 //! x_c and x_{c+1} instead of casting a ray between them therefore has its density divided by what that edge lets through.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use ajar_render::{
     World,
     bsdf::{Mode, Side},
@@ -14,9 +16,9 @@ use ajar_render::{
 use glam::DVec2;
 
 use super::Reject;
-use crate::{Window, bdpt::MAX_VERTICES};
+use crate::{Context, Window, bdpt::MAX_VERTICES};
 
-/// Where paths live: the scene and the part of the film that counts.
+/// Where paths live: the scene and the part of the film that counts; and whether anybody still wants them.
 #[derive(Clone, Copy, Debug)]
 pub struct Space<'w> {
     /// The prepared scene.
@@ -28,12 +30,28 @@ pub struct Space<'w> {
     /// Pixels of the film over pixels of the window: f is normalized so that uniform raster positions in the window have
     /// throughput 1.
     pub film_ratio: f64,
+    /// Set by others to stop early.
+    cancel: &'w AtomicBool,
 }
+
+static NEVER: AtomicBool = AtomicBool::new(false);
 
 impl<'w> Space<'w> {
     /// The paths of at most `max_depth` edges that arrive in `window`.
     pub fn new(world: &'w World, window: Window, max_depth: usize) -> Self {
-        Self { world, window, max_depth, film_ratio: world.camera.pixels() as f64 / window.pixels() as f64 }
+        let film_ratio = world.camera.pixels() as f64 / window.pixels() as f64;
+        Self { world, window, max_depth, film_ratio, cancel: &NEVER }
+    }
+
+    /// Those that a render asks for.
+    pub fn of(cx: &Context<'w>) -> Self {
+        Self { cancel: cx.cancel, ..Self::new(cx.world, cx.settings.window, cx.settings.max_depth) }
+    }
+
+    /// Whether whatever is found from now on is worthless.
+    #[inline]
+    pub fn cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
     }
 
     /// The pixel of the window at a raster position.

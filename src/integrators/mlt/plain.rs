@@ -69,7 +69,7 @@ pub struct PlainChains<'a> {
 impl<'a> PlainChains<'a> {
     /// All mutations with the weights that the settings ask for.
     pub fn new(cx: Context<'a>) -> Self {
-        let space = Space::new(cx.world, cx.settings.window, cx.settings.max_depth);
+        let space = Space::of(&cx);
         let (mutations, usual) = mutations(&cx.settings.metropolis.weights);
         let choice = cx.settings.metropolis.choice;
         let table = if choice == Choice::Fixed { usual.clone() } else { usual.equal() };

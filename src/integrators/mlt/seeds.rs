@@ -81,6 +81,9 @@ impl<'w> Bootstrap<'w> {
                 || (self.tracer(), memory()),
                 |(tracer, memory), block| {
                     let mut kept = Vec::new();
+                    if self.space.cancelled() {
+                        return kept;
+                    }
                     for i in block * BLOCK..((block + 1) * BLOCK).min(self.samples) {
                         self.visit(tracer, i, |found| {
                             kept.extend(self.candidate(i, found).and_then(|c| keep(memory, c, found)));

@@ -103,9 +103,15 @@ impl Blas {
         [self.center + a, self.center + b, self.center + c]
     }
 
+    /// Whether rays meet nothing in it.
+    #[inline]
+    pub(super) fn is_empty(&self) -> bool {
+        self.tree.nodes.is_empty()
+    }
+
     /// What positions are relative to; none if there is no triangle.
     pub(super) fn center(&self) -> Option<DVec3> {
-        (!self.tree.nodes.is_empty()).then_some(self.center)
+        (!self.is_empty()).then_some(self.center)
     }
 
     #[inline]

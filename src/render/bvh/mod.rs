@@ -1,13 +1,15 @@
 //! What rays meet: triangles, found through trees of boxes.
 //!
 //! Meshes that are placed once become triangles in world space under one tree. Meshes that are placed many times keep
-//! one tree of their own, and a top level finds the placements. Both trees are eight children wide; `obvhs` builds the
+//! one tree of their own, and a top level finds the placements. The shapes of lights have a tree apart, so that moving a
+//! light leaves all others as they are ([`Geometry::build_after`]). All trees are eight children wide; `obvhs` builds the
 //! binary trees that they are cut from. Traversal is in f32 around a centre near the detail of the scene and is
 //! watertight (Woop, Benthin & Wald 2013); the hit is then computed again in f64.
 //!
 //! The same vertices that rays meet are what [`Geometry::vertices`] gives, so points on them are on the surface to the
 //! last digits of f64.
 
+mod assemble;
 mod bake;
 mod blas;
 mod build;
@@ -23,13 +25,12 @@ mod triangle;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec3};
-use rayon::prelude::*;
 
 use crate::ray::Ray;
-use bake::{Baked, own_blas};
 use blas::{Blas, Candidate};
-use tlas::{Placed, Tlas};
+use tlas::Tlas;
 
+pub use assemble::Previous;
 pub use offset::{Anchor, offset_origin, segment};
 
 /// Triangles of a mesh.
@@ -42,12 +43,21 @@ pub struct MeshGeometry {
 }
 
 /// One placement of a mesh.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InstanceGeometry {
     /// Which of the meshes.
     pub mesh: usize,
     /// Any affine map; singular ones are allowed.
     pub to_world: DAffine3,
+    /// Whether it is the shape of a light.
+    pub is_lamp: bool,
+}
+
+impl InstanceGeometry {
+    /// A placement of a mesh that is no light.
+    pub fn solid(mesh: usize, to_world: DAffine3) -> Self {
+        Self { mesh, to_world, is_lamp: false }
+    }
 }
 
 /// Where a ray meets a triangle.
@@ -78,7 +88,10 @@ pub struct Met {
 #[derive(Debug)]
 pub struct Geometry {
     places: Vec<Place>,
-    baked: Blas,
+    baked: Arc<Blas>,
+    lamps: Arc<Blas>,
+    /// The trees of meshes that have one of their own.
+    own: Vec<Option<Arc<Blas>>>,
     tlas: Tlas,
     low: DVec3,
     high: DVec3,
@@ -89,60 +102,13 @@ pub struct Geometry {
 enum Place {
     /// Among the world's triangles, from this one on.
     Baked(u32),
+    /// Among those of the shapes of lights, from this one on.
+    Lamp(u32),
     /// This one of the top level's placements.
     Own(u32),
 }
 
-/// Meshes placed many times are still baked if the copies come to fewer triangles than this: rays are faster then.
-const BAKED_COPIES: usize = 50_000;
-
 impl Geometry {
-    /// Prepares `instances` of `meshes`.
-    pub fn build(meshes: &[Arc<MeshGeometry>], instances: &[InstanceGeometry]) -> Self {
-        Self::build_baking(meshes, instances, BAKED_COPIES)
-    }
-
-    fn build_baking(meshes: &[Arc<MeshGeometry>], instances: &[InstanceGeometry], copies: usize) -> Self {
-        let mut uses = vec![0usize; meshes.len()];
-        for instance in instances {
-            if let Some(n) = uses.get_mut(instance.mesh) {
-                *n += 1;
-            }
-        }
-        let is_own =
-            |mesh: usize| (uses[mesh].saturating_sub(1)) * meshes[mesh].triangles.len() >= copies.max(1);
-        let own: Vec<Option<Arc<Blas>>> = (0..meshes.len())
-            .into_par_iter()
-            .map(|i| is_own(i).then(|| Arc::new(own_blas(&meshes[i]))))
-            .collect();
-
-        let mut baked = Baked::default();
-        let mut places = Vec::with_capacity(instances.len());
-        let mut placed = Vec::new();
-        for (number, instance) in instances.iter().enumerate() {
-            let blas = own.get(instance.mesh).and_then(Option::as_ref);
-            places.push(match blas.filter(|_| is_invertible(&instance.to_world)) {
-                Some(blas) => {
-                    placed.push(Placed {
-                        instance: number as u32,
-                        blas: Arc::clone(blas),
-                        to_world: instance.to_world,
-                        to_local: instance.to_world.inverse(),
-                    });
-                    Place::Own(placed.len() as u32 - 1)
-                }
-                None => Place::Baked(baked.add(number as u32, meshes.get(instance.mesh), instance.to_world)),
-            });
-        }
-        let (baked, tlas) = rayon::join(|| baked.build(), || Tlas::build(&placed));
-        let (mut low, mut high) =
-            (baked.bounds().0.min(tlas.bounds().0), baked.bounds().1.max(tlas.bounds().1));
-        if !low.cmple(high).all() {
-            (low, high) = (DVec3::ZERO, DVec3::ZERO);
-        }
-        Self { places, baked, tlas, low, high }
-    }
-
     /// Two opposite corners of a box around everything; zero if there is nothing.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         (self.low, self.high)
@@ -152,6 +118,7 @@ impl Geometry {
     pub fn vertices(&self, instance: u32, triangle: u32) -> [DVec3; 3] {
         match &self.places[instance as usize] {
             Place::Baked(first) => self.baked.vertices(first + triangle),
+            Place::Lamp(first) => self.lamps.vertices(first + triangle),
             Place::Own(number) => {
                 let one = self.tlas.placement(*number);
                 one.blas.vertices(triangle).map(|p| one.to_world.transform_point3(p))
@@ -166,17 +133,22 @@ impl Geometry {
         let [a, b, c] = *vertices;
         let extent =
             (b - a).length_squared().max((c - a).length_squared()).max((c - b).length_squared()).sqrt();
-        let mut reach = 0f64;
-        if let Some(center) = self.baked.center() {
-            let far = (a - center).abs().max((b - center).abs()).max((c - center).abs());
-            reach = far.max_element();
-        }
-        if let Place::Own(number) = &self.places[instance as usize] {
-            let one = self.tlas.placement(*number);
-            let m = one.to_world.matrix3;
-            let local = one.blas.reach();
-            let own = m.x_axis.abs() * local.x + m.y_axis.abs() * local.y + m.z_axis.abs() * local.z;
-            reach = reach.max(own.max_element());
+        let from = |set: &Blas| {
+            set.center().map_or(0.0, |center| {
+                (a - center).abs().max((b - center).abs()).max((c - center).abs()).max_element()
+            })
+        };
+        let mut reach = from(&self.baked);
+        match &self.places[instance as usize] {
+            Place::Baked(_) => {}
+            Place::Lamp(_) => reach = reach.max(from(&self.lamps)),
+            Place::Own(number) => {
+                let one = self.tlas.placement(*number);
+                let m = one.to_world.matrix3;
+                let local = one.blas.reach();
+                let own = m.x_axis.abs() * local.x + m.y_axis.abs() * local.y + m.z_axis.abs() * local.z;
+                reach = reach.max(own.max_element());
+            }
         }
         offset::rounding(reach, extent)
     }
@@ -216,10 +188,28 @@ impl Geometry {
             return None;
         }
         let mut best = find_in::<ANY, FILTER>(&self.baked, None, ray, &accept);
+        if !(self.lamps.is_empty() || (ANY && best.is_some())) {
+            self.find_lamp::<ANY, FILTER>(ray, &mut best, &accept);
+        }
         if !(self.tlas.is_empty() || (ANY && best.is_some())) {
             self.find_placed::<ANY, FILTER>(ray, &mut best, &accept);
         }
         best
+    }
+
+    /// Replaces `best` by what is nearer among the shapes of lights.
+    #[inline(never)]
+    fn find_lamp<const ANY: bool, const FILTER: bool>(
+        &self,
+        ray: &Ray,
+        best: &mut Option<Met>,
+        accept: &impl Fn(&Hit) -> bool,
+    ) {
+        let rest = Ray { t_max: best.map_or(ray.t_max, |met| met.hit.t), ..*ray };
+        let found = find_in::<ANY, FILTER>(&self.lamps, None, &rest, accept);
+        if let Some(met) = found.filter(|met| best.is_none_or(|b| is_before(&met.hit, &b.hit))) {
+            *best = Some(met);
+        }
     }
 
     /// Replaces `best` by what is nearer among the placements of the top level.
@@ -250,7 +240,7 @@ impl Geometry {
 
     /// Bytes held by triangles, trees and placements.
     pub fn memory(&self) -> usize {
-        size_of_val(&self.places[..]) + self.baked.memory() + self.tlas.memory()
+        size_of_val(&self.places[..]) + self.baked.memory() + self.lamps.memory() + self.tlas.memory()
     }
 }
 
@@ -286,11 +276,4 @@ fn find_in<const ANY: bool, const FILTER: bool>(
     let exact = blas.refine(&local, &found);
     let hit = hit(&found, exact.u as f32, exact.v as f32, exact.t.max(0.0).min(ray.t_max));
     Some(Met { hit, vertices: exact.vertices })
-}
-
-fn is_invertible(map: &DAffine3) -> bool {
-    let m = map.matrix3;
-    let volume = m.determinant().abs();
-    let size = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
-    volume > 1e-12 * size && map.inverse().is_finite()
 }

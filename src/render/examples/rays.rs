@@ -26,10 +26,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let file = std::env::args().nth(1).ok_or("usage: rays FILE")?;
     let mesh = room();
     let started = Instant::now();
-    let geometry = Geometry::build(
-        &[Arc::new(mesh.clone())],
-        &[InstanceGeometry { mesh: 0, to_world: DAffine3::IDENTITY }],
-    );
+    let geometry =
+        Geometry::build(&[Arc::new(mesh.clone())], &[InstanceGeometry::solid(0, DAffine3::IDENTITY)]);
     let mut out = std::io::stdout();
     writeln!(out, "triangles {} built in {:.2?}", mesh.triangles.len(), started.elapsed())?;
     writeln!(out, "bytes per triangle {:.1}", geometry.memory() as f64 / mesh.triangles.len() as f64)?;

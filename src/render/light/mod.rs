@@ -9,6 +9,8 @@ mod shapes;
 pub use dirac::DiracLight;
 pub(crate) use shapes::tessellate;
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::{
@@ -44,7 +46,7 @@ pub struct TriangleLight {
 #[derive(Debug, Default)]
 pub struct Lights {
     dirac: Vec<DiracLight>,
-    environment: Option<Environment>,
+    environment: Option<Arc<Environment>>,
     triangles: Vec<TriangleLight>,
     choice: Discrete,
     /// Bounding sphere of the scene: lights infinitely far shine through a disc of its size.
@@ -66,7 +68,7 @@ pub struct Emission {
 impl Lights {
     pub(crate) fn new(
         dirac: Vec<DiracLight>,
-        environment: Option<Environment>,
+        environment: Option<Arc<Environment>>,
         triangles: Vec<TriangleLight>,
         (centre, radius): (DVec3, f64),
     ) -> Self {
@@ -110,7 +112,12 @@ impl Lights {
 
     /// The surroundings.
     pub fn environment(&self) -> Option<&Environment> {
-        self.environment.as_ref()
+        self.environment.as_deref()
+    }
+
+    /// The surroundings, to be shared.
+    pub(crate) fn shared_environment(&self) -> Option<Arc<Environment>> {
+        self.environment.clone()
     }
 
     /// Index of the surroundings as an emitter.

@@ -54,7 +54,7 @@ pub(super) struct Header {
 pub fn decode(image: &Image, memory_limit: u64) -> Result<Decoded, Diagnostic> {
     let header = probe(image)?;
     if header.bytes > memory_limit {
-        return Err(too_large(image, &header, memory_limit));
+        return Err(too_large(image, header.bytes, memory_limit));
     }
     let mut bitmap = guarded(image, || {
         let mut input = open(&image.source)?;
@@ -93,9 +93,9 @@ pub(super) fn probe(image: &Image) -> Result<Header, Diagnostic> {
     Ok(header)
 }
 
-pub(super) fn too_large(image: &Image, header: &Header, left: u64) -> Diagnostic {
+pub(super) fn too_large(image: &Image, bytes: u64, left: u64) -> Diagnostic {
     let mib = |bytes: u64| bytes.div_ceil(1 << 20);
-    let why = format!("needs {} MiB, {} MiB are left for textures", mib(header.bytes), left >> 20);
+    let why = format!("needs {} MiB, {} MiB are left for textures", mib(bytes), left >> 20);
     let hint = "scale images down or raise the memory limit";
     refuse(image, &why).because(Cause::Resource).hint(hint)
 }

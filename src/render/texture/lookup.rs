@@ -47,6 +47,14 @@ impl Texture {
         Self { wrap: [u, v], ..self }
     }
 
+    /// Whether it is the same image in memory, read the same way.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let Self { bitmap, srgb, wrap, filter, uv_set, transform, scale, bias } = self;
+        Arc::ptr_eq(bitmap, &other.bitmap)
+            && (srgb, wrap, filter, uv_set) == (&other.srgb, &other.wrap, &other.filter, &other.uv_set)
+            && (transform, scale, bias) == (&other.transform, &other.scale, &other.bias)
+    }
+
     /// Which texture coordinate set of a mesh it is read with.
     pub fn uv_set(&self) -> u32 {
         self.uv_set

@@ -12,4 +12,4 @@ mod prepare;
 pub use bitmap::{Bitmap, Texels};
 pub use decode::{Decoded, decode};
 pub use lookup::Texture;
-pub use prepare::{Textures, load_textures};
+pub use prepare::{LoadedBefore, Textures, load_textures};

@@ -3,11 +3,18 @@
 mod cast;
 mod differential;
 mod emission;
+mod emitters;
 mod prepare;
+mod previous;
 mod surface;
+#[cfg(test)]
+mod tests;
 
 pub use differential::Differential;
-pub use prepare::{PrepareOptions, prepare};
+pub use prepare::{PrepareOptions, prepare, prepare_after};
+pub use previous::Previous;
+
+use std::sync::Arc;
 
 use ajar_scene::{Id, Mesh, Node, Scene};
 use glam::{DAffine3, DMat3, DVec3};
@@ -20,6 +27,8 @@ use crate::{
     path::{Kind, Vertex},
     texture::Textures,
 };
+use emitters::Surrounding;
+use previous::Tangents;
 
 /// A mesh placed by a node.
 #[derive(Clone, Debug)]
@@ -40,29 +49,39 @@ pub struct Instance {
     pub first_emitter: Option<u32>,
 }
 
-/// A scene prepared for rendering.
-#[derive(Debug)]
+/// A scene prepared for rendering. Clones share what is large.
+#[derive(Clone, Debug)]
 pub struct World {
     /// Camera with film.
     pub camera: Camera,
     /// Emitters.
-    pub lights: Lights,
+    pub lights: Arc<Lights>,
     /// Length below which an edge carries no light, metres.
     pub shortest_edge: f64,
     /// The scene, its lights with a shape turned into meshes.
-    pub scene: Scene,
-    geometry: Geometry,
+    pub scene: Arc<Scene>,
+    geometry: Arc<Geometry>,
     instances: Vec<Instance>,
+    /// Meshes of the scene from this number on are the shapes of lights.
+    solids: usize,
     materials: Vec<Material>,
     textures: Textures,
-    /// Tangents per triangle corner, where a material needs them and the mesh has none.
-    tangents: Vec<Option<Vec<[glam::Vec4; 3]>>>,
+    /// What the surroundings in `lights` are made of.
+    surroundings: Vec<Surrounding>,
+    /// For each mesh tangents per triangle corner, where a material needs them and the mesh has none.
+    tangents: Vec<Option<Tangents>>,
     has_alpha: bool,
     has_culling: bool,
     has_absorption: bool,
 }
 
 impl World {
+    /// The same, seen by another camera.
+    pub fn seen_by(&self, camera: &ajar_scene::Camera, to_world: &DAffine3, size: [u32; 2]) -> Self {
+        let [width, height] = size;
+        Self { camera: Camera::new(camera, to_world, width, height), ..self.clone() }
+    }
+
     /// The meshes placed in it.
     pub fn instances(&self) -> &[Instance] {
         &self.instances

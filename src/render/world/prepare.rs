@@ -5,19 +5,20 @@ use std::sync::Arc;
 use ajar_scene::{
     Camera, Diagnostic, Id, Input, Light, LightKind, Material, Mesh, Scene, Severity, TextureInput,
 };
-use glam::{DAffine3, DMat3, DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::{Instance, World};
+use super::{
+    Instance, World,
+    emitters::emitters,
+    previous::{Previous, Tangents, same_shape},
+};
 use crate::{
-    bvh::{Geometry, InstanceGeometry, MeshGeometry},
+    bvh::{self, Geometry, InstanceGeometry, MeshGeometry},
     camera,
-    environment::Environment,
-    light::{DiracLight, Lights, TriangleLight, tessellate},
+    light::tessellate,
     material,
-    math::{Frame, scalar},
-    tangents,
-    texture::{Textures, load_textures},
+    texture::{LoadedBefore, load_textures},
 };
 
 /// What a world needs to know besides the scene.
@@ -35,44 +36,59 @@ pub struct PrepareOptions {
 ///
 /// # Errors
 /// Images that cannot be decoded.
-pub fn prepare(
+pub fn prepare(scene: Scene, options: &PrepareOptions) -> Result<(World, Vec<Diagnostic>), Vec<Diagnostic>> {
+    prepare_after(scene, options, None)
+}
+
+/// As [`prepare`], with the same result, but what is as it was in the `previous` world is shared with it: decoded images,
+/// trees of geometry, tangents, surroundings.
+///
+/// # Errors
+/// Images that cannot be decoded.
+pub fn prepare_after(
     mut scene: Scene,
     options: &PrepareOptions,
+    previous: Option<Previous<'_>>,
 ) -> Result<(World, Vec<Diagnostic>), Vec<Diagnostic>> {
     let camera = &scene.cameras[options.camera.0];
     let [width, height] = options.size;
     let camera = camera::Camera::new(camera, &options.camera.1, width, height);
+    let solids = scene.meshes.len();
     shapes_to_meshes(&mut scene);
-    let (textures, diagnostics) = load_textures(&scene, options.texture_memory);
+    let before = previous.map(|it| LoadedBefore { textures: &it.world.textures, changed: it.changed });
+    let (textures, diagnostics) = load_textures(&scene, options.texture_memory, before);
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {
         return Err(diagnostics);
     }
     let default_material = scene.materials.push(Material { name: "default".into(), ..Material::default() });
     let instances = instances(&scene, default_material);
-    let geometry = build_geometry(&scene, &instances);
+    let old = previous.map(|previous| previous.world);
+    let geometry = geometry(&scene, &instances, solids, old);
     let materials = materials(&scene, &instances);
-    let tangents = generate_tangents(&scene, &instances);
+    let tangents = generate_tangents(&scene, &instances, old);
     let uses = |test: fn(&material::Material) -> bool| {
         instances.iter().any(|instance| test(&materials[instance.material as usize]))
     };
     let mut world = World {
         camera,
-        lights: Lights::default(),
+        lights: Arc::default(),
         shortest_edge: 0.0,
         has_alpha: uses(material::Material::has_alpha),
         has_culling: uses(material::Material::cull_back),
         has_absorption: uses(|m| m.absorption().is_some()),
-        scene,
+        scene: Arc::new(scene),
         geometry,
         instances,
+        solids,
         materials,
         textures,
+        surroundings: Vec::new(),
         tangents,
     };
     let sphere = world.bounding_sphere();
     // Closer neighbours carry no light: it keeps 1/r² in corners finite, far below what a pixel shows.
     world.shortest_edge = 1e-7 * sphere.1;
-    world.lights = emitters(&mut world, sphere);
+    world.lights = Arc::new(emitters(&mut world, sphere, old));
     Ok((world, diagnostics))
 }
 
@@ -150,24 +166,44 @@ fn instances(scene: &Scene, default_material: Id<Material>) -> Vec<Instance> {
     found
 }
 
-fn build_geometry(scene: &Scene, instances: &[Instance]) -> Geometry {
+/// What rays meet. Meshes from number `solids` on are the shapes of lights.
+fn geometry(scene: &Scene, instances: &[Instance], solids: usize, old: Option<&World>) -> Arc<Geometry> {
     let mut used = vec![false; scene.meshes.len()];
     instances.iter().for_each(|instance| used[instance.mesh.index()] = true);
-    let meshes: Vec<Arc<MeshGeometry>> = scene
-        .meshes
-        .iter()
-        .zip(used)
-        .map(|(mesh, used)| {
-            let geometry =
-                MeshGeometry { positions: mesh.positions.clone(), triangles: mesh.triangles.clone() };
-            Arc::new(if used { geometry } else { MeshGeometry::default() })
-        })
-        .collect();
-    let placements: Vec<InstanceGeometry> = instances
-        .iter()
-        .map(|instance| InstanceGeometry { mesh: instance.mesh.index(), to_world: instance.to_world })
-        .collect();
-    Geometry::build(&meshes, &placements)
+    let placements = placements_of(instances, solids);
+    let same = old.map(|old| same_shapes(scene, &used, &old.scene)).unwrap_or_default();
+    let old_placements = old.map(|old| placements_of(&old.instances, old.solids)).unwrap_or_default();
+    let previous =
+        old.map(|old| bvh::Previous { geometry: &old.geometry, instances: &old_placements, same: &same });
+    if let (Some(old), Some(previous)) = (old, previous)
+        && previous.is_of(&placements)
+    {
+        return Arc::clone(&old.geometry);
+    }
+    let shape = |(mesh, used): (&Mesh, bool)| {
+        let geometry = MeshGeometry { positions: mesh.positions.clone(), triangles: mesh.triangles.clone() };
+        Arc::new(if used { geometry } else { MeshGeometry::default() })
+    };
+    let meshes: Vec<Arc<MeshGeometry>> = scene.meshes.iter().zip(used).map(shape).collect();
+    Arc::new(Geometry::build_after(&meshes, &placements, previous))
+}
+
+fn placements_of(instances: &[Instance], solids: usize) -> Vec<InstanceGeometry> {
+    let place = |instance: &Instance| InstanceGeometry {
+        mesh: instance.mesh.index(),
+        to_world: instance.to_world,
+        is_lamp: instance.mesh.index() >= solids,
+    };
+    instances.iter().map(place).collect()
+}
+
+/// For each mesh that is used whether the old scene has the same shape at that number.
+fn same_shapes(scene: &Scene, used: &[bool], old: &Scene) -> Vec<bool> {
+    let meshes: Vec<_> = scene.meshes.ids().zip(used).collect();
+    let is_same = |(id, &used): (Id<Mesh>, &bool)| {
+        used && old.meshes.get(id).is_some_and(|old| same_shape(&scene.meshes[id], old))
+    };
+    meshes.into_par_iter().map(is_same).collect()
 }
 
 fn materials(scene: &Scene, instances: &[Instance]) -> Vec<material::Material> {
@@ -184,7 +220,7 @@ fn materials(scene: &Scene, instances: &[Instance]) -> Vec<material::Material> {
 }
 
 /// Tangents for meshes that have none and a material that needs them.
-fn generate_tangents(scene: &Scene, instances: &[Instance]) -> Vec<Option<Vec<[glam::Vec4; 3]>>> {
+fn generate_tangents(scene: &Scene, instances: &[Instance], old: Option<&World>) -> Vec<Option<Tangents>> {
     let mut sets: Vec<Option<u32>> = vec![None; scene.meshes.len()];
     for instance in instances {
         let mesh = &scene.meshes[instance.mesh];
@@ -193,8 +229,15 @@ fn generate_tangents(scene: &Scene, instances: &[Instance]) -> Vec<Option<Vec<[g
             sets[instance.mesh.index()] = set;
         }
     }
-    let meshes: Vec<&Mesh> = scene.meshes.iter().collect();
-    meshes.into_par_iter().zip(sets).map(|(mesh, set)| tangents::generate(mesh, set? as usize)).collect()
+    let meshes: Vec<_> = scene.meshes.ids().zip(sets).collect();
+    meshes
+        .into_par_iter()
+        .map(|(id, set)| {
+            let (mesh, set) = (&scene.meshes[id], set?);
+            let kept = old.and_then(|old| Tangents::kept(old, id, mesh, set));
+            kept.or_else(|| Tangents::new(mesh, set))
+        })
+        .collect()
 }
 
 /// The texture coordinate set that a material's tangents follow, if it needs tangents.
@@ -204,99 +247,4 @@ fn tangent_uv_set(scene: &Scene, material: &Material) -> Option<u32> {
         return scene.textures.get(texture).map(|texture| texture.uv_set);
     }
     (material.anisotropy.value > 0.0).then_some(0)
-}
-
-fn emitters(world: &mut World, sphere: (DVec3, f64)) -> Lights {
-    let mut dirac = Vec::new();
-    let mut sky = Environment::default();
-    for placed in world.scene.placed().into_iter().filter(|p| p.visible) {
-        let Some(light) = placed.node.light.map(|id| &world.scene.lights[id]) else { continue };
-        add_light(light, &placed.world, &world.textures, &mut dirac, &mut sky);
-    }
-    let sky = (!sky.is_empty()).then_some(sky);
-    let first = dirac.len() + usize::from(sky.is_some());
-    let mut triangles = Vec::new();
-    for index in 0..world.instances.len() {
-        if world.materials[world.instances[index].material as usize].emits() {
-            world.instances[index].first_emitter = Some((first + triangles.len()) as u32);
-            let count = world.scene.meshes[world.instances[index].mesh].triangles.len() as u32;
-            triangles.par_extend((0..count).into_par_iter().map(|t| triangle_light(world, index as u32, t)));
-        }
-    }
-    Lights::new(dirac, sky, triangles, sphere)
-}
-
-fn add_light(
-    light: &Light,
-    to_world: &DAffine3,
-    textures: &Textures,
-    dirac: &mut Vec<DiracLight>,
-    sky: &mut Environment,
-) {
-    let color = light.color.as_dvec3();
-    let axis = to_world.transform_vector3(DVec3::NEG_Z).normalize_or(DVec3::NEG_Z);
-    match light.kind {
-        LightKind::Point { intensity } => dirac.push(DiracLight::Point {
-            position: to_world.translation,
-            intensity: color * f64::from(intensity),
-        }),
-        LightKind::Spot { intensity, inner, outer } => dirac.push(DiracLight::Spot {
-            position: to_world.translation,
-            frame: Frame::from_z(axis),
-            intensity: color * f64::from(intensity),
-            inner: f64::from(inner).cos(),
-            outer: f64::from(outer).cos(),
-        }),
-        LightKind::Directional { illuminance, angle } => {
-            let illuminance = color * f64::from(illuminance);
-            if angle > 0.0 {
-                sky.add_sun(-axis, angle.into(), illuminance);
-            } else {
-                dirac.push(DiracLight::Directional { to_light: -axis, illuminance });
-            }
-        }
-        LightKind::Environment { radiance, texture } => {
-            let radiance = color * f64::from(radiance);
-            match texture.and_then(|id| textures.get(id)) {
-                Some(image) => sky.add_image(image.clone(), rotation(to_world), radiance),
-                None => sky.add_uniform(radiance),
-            }
-        }
-        LightKind::Rect { .. }
-        | LightKind::Disk { .. }
-        | LightKind::Sphere { .. }
-        | LightKind::Cylinder { .. } => {}
-    }
-}
-
-/// The rotation of an affine map, by orthonormalizing its axes.
-fn rotation(map: &DAffine3) -> DMat3 {
-    let z = map.transform_vector3(DVec3::Z).normalize_or(DVec3::Z);
-    let frame = Frame::from_zx(z, map.transform_vector3(DVec3::X));
-    DMat3::from_cols(frame.x, frame.y, frame.z)
-}
-
-/// Barycentric points at which the emission of a triangle is averaged.
-const EMISSION_PROBES: [[f64; 2]; 7] =
-    [[1.0 / 3.0, 1.0 / 3.0], [0.6, 0.2], [0.2, 0.6], [0.2, 0.2], [0.05, 0.05], [0.9, 0.05], [0.05, 0.9]];
-
-fn triangle_light(world: &World, instance: u32, triangle: u32) -> TriangleLight {
-    let placed = &world.instances[instance as usize];
-    let material = &world.materials[placed.material as usize];
-    let vertices = world.geometry.vertices(instance, triangle);
-    let [a, b, c] = vertices;
-    let normal = (b - a).cross(c - a);
-    let probe = |uv| scalar(material.emission(&world.textures, &world.point(placed, triangle, uv)));
-    let mean = EMISSION_PROBES.iter().map(|&uv| probe(uv)).sum::<f64>() / EMISSION_PROBES.len() as f64;
-    // Probes may miss the bright texels of a texture: some density stays wherever the material might shine.
-    TriangleLight {
-        instance,
-        triangle,
-        vertices,
-        normal: normal.normalize_or(DVec3::Z) * placed.handedness,
-        area: normal.length() / 2.0,
-        rounding: world.geometry.rounding(instance, &vertices),
-        both_sides: material.emits_both_sides(),
-        brightness: mean.max(0.02 * scalar(material.emission_factor())),
-    }
 }

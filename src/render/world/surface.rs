@@ -186,7 +186,7 @@ impl World {
 
     fn tangent(&self, instance: &Instance, point: &Point<'_>) -> Option<glam::DVec4> {
         let corners = match &self.tangents[instance.mesh.index()] {
-            Some(generated) => generated[point.triangle as usize],
+            Some(generated) => generated.corners[point.triangle as usize],
             None => {
                 let given = point.mesh.tangents.as_ref()?;
                 point.corners().map(|i| given[i])

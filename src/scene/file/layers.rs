@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use toml::de::DeTable;
+use toml::{Spanned, de::DeTable};
 
 use super::{report::Report, source::Source};
 use crate::{Diagnostic, ImportRequest};
@@ -17,6 +17,7 @@ const MOST: usize = 16;
 pub(super) const EXTENDS: &str = "extends";
 
 /// A file with its text.
+#[derive(Clone, Debug)]
 pub(super) struct Text {
     pub path: PathBuf,
     pub text: String,
@@ -30,6 +31,7 @@ pub(super) fn read(request: &ImportRequest) -> Result<Vec<Text>, Vec<Diagnostic>
     let mut texts: Vec<Text> = Vec::new();
     let mut next = Some(request.path.clone());
     while let Some(path) = next {
+        request.looked.note(&path);
         let text = text(&path)?;
         next = below(&ImportRequest { path: path.clone(), ..request.clone() }, &text, &texts)?;
         texts.push(Text { path, text });
@@ -57,20 +59,29 @@ fn text(path: &Path) -> Result<String, Vec<Diagnostic>> {
     })
 }
 
+/// The document in a text.
+///
+/// # Errors
+/// All that the parser does not understand.
+pub(super) fn parse<'a>(path: &Path, text: &'a str) -> Result<Spanned<DeTable<'a>>, Vec<Diagnostic>> {
+    let (document, errors) = DeTable::parse_recoverable(text);
+    if errors.is_empty() {
+        return Ok(document);
+    }
+    let report = Report::new(path, text);
+    for error in errors {
+        report.push(&error.span().unwrap_or(0..0), Diagnostic::error(error.message()));
+    }
+    // What follows on the same line is mostly the parser finding its feet again.
+    let mut found = report.finish();
+    found.dedup_by_key(|diagnostic| diagnostic.place.map(|(line, _)| line));
+    Err(found)
+}
+
 /// The file that this one extends.
 fn below(request: &ImportRequest, text: &str, above: &[Text]) -> Result<Option<PathBuf>, Vec<Diagnostic>> {
     let path = &*request.path;
-    let report = Report::new(path, text);
-    let (document, errors) = DeTable::parse_recoverable(text);
-    if !errors.is_empty() {
-        for error in errors {
-            report.push(&error.span().unwrap_or(0..0), Diagnostic::error(error.message()));
-        }
-        // What follows on the same line is mostly the parser finding its feet again.
-        let mut found = report.finish();
-        found.dedup_by_key(|diagnostic| diagnostic.place.map(|(line, _)| line));
-        return Err(found);
-    }
+    let document = parse(path, text)?;
     let Some(value) = document.get_ref().get(EXTENDS) else { return Ok(None) };
     let refuse = |error: Diagnostic| {
         let report = Report::new(path, text);

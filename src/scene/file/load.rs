@@ -15,11 +15,12 @@ use super::{
     value::text,
 };
 use crate::{
-    Diagnostic, ImportRequest, Imported, Node, OutputSettings, Overrides, RenderSettings, Scene, Severity,
+    Diagnostic, ImportRequest, Imported, Looked, Node, OutputSettings, Overrides, RenderSettings, Scene,
+    Severity,
 };
 
-/// Reads the scene file of `request`, over the files that it extends, below changes from the command line. `import` turns
-/// each file it names into a scene; it is given the folder of the scene file as one more folder that may be read.
+/// Reads the scene file of `request`, over the files that it extends, below `overrides`. `import` turns each file it names
+/// into a scene; it is given the folder of the scene file as one more folder that may be read.
 ///
 /// # Errors
 /// All errors that were found, in the order of the files, with the warnings among them.
@@ -30,36 +31,38 @@ pub fn load(
 ) -> Result<SceneFile, Vec<Diagnostic>> {
     let texts = layers::read(request)?;
     let assets = Assets { files: texts.iter().map(|text| text.path.clone()).collect(), ..Assets::default() };
-    let mut sources = vec![overrides.source(&request.path)];
+    let mut sources = overrides.sources(&request.path);
     sources.extend(layers::sources(&texts));
-    for source in &mut sources {
-        source.request.allowed.clone_from(&request.allowed);
-    }
-    assemble(sources, assets, import)
+    assemble(sources, request, assets, import)
 }
 
-/// Changes from the command line applied to an imported asset, as if a scene file imported nothing else.
+/// Changes applied to the asset of `request`, imported, as if a scene file imported nothing else.
 ///
 /// # Errors
 /// What is wrong with the changes.
 pub fn load_asset(
-    path: &Path,
+    request: &ImportRequest,
     overrides: &Overrides,
     imported: Imported,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
     let Imported { scene, diagnostics, files, render: preference } = imported;
     let assets = Assets { scene, files, preference };
     let nothing = |_: &ImportRequest| Ok(Imported::default());
-    let file = assemble(vec![overrides.source(path)], assets, &nothing)?;
+    let file = assemble(overrides.sources(&request.path), request, assets, &nothing)?;
     sound(SceneFile { diagnostics: [file.diagnostics, diagnostics].concat(), ..file })
 }
 
-/// What the sources together say, with what is to be said about them.
+/// What the sources together say, with what is to be said about them. They look for files as `request` does.
 fn assemble(
-    sources: Vec<Source<'_>>,
+    mut sources: Vec<Source<'_>>,
+    request: &ImportRequest,
     assets: Assets,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
+    for source in &mut sources {
+        source.request.allowed.clone_from(&request.allowed);
+        source.request.looked = request.looked.clone();
+    }
     let settings = Settings::default();
     let (mut file, imported) = read(Keys::new(&sources, &settings), assets, import);
     file.diagnostics =
@@ -146,9 +149,10 @@ fn add_import(
     diagnostics: &mut Vec<Diagnostic>,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> bool {
-    let mut allowed = Vec::new();
+    let (mut allowed, mut looked) = (Vec::new(), Looked::default());
     let file = keys.required_of("file", |value, source| {
         allowed.push(source.request.folder().to_owned());
+        looked = source.request.looked.clone();
         assets.file(value, source)
     });
     let name = keys.optional("name", text);
@@ -157,7 +161,7 @@ fn add_import(
     keys.finish();
     let Some(path) = file else { return false };
     let name = name.unwrap_or_else(|| stem(&path));
-    match import(&ImportRequest { allowed, choice, ..ImportRequest::new(path) }) {
+    match import(&ImportRequest { allowed, choice, looked, ..ImportRequest::new(path) }) {
         Ok(Imported { scene, diagnostics: found, files, render }) => {
             assets.preference.complete(render);
             diagnostics.extend(found);

@@ -1,10 +1,14 @@
-//! Changes from the command line, `material.Chrome.roughness=0.2`, as a TOML document that goes before the file's.
+//! What lies over a scene file: changes from the command line, `material.Chrome.roughness=0.2`, as a TOML document that goes
+//! before the file's; and over them a file that is being edited and not yet saved.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use toml::{Spanned, Value, de::DeTable};
 
-use super::source::Source;
+use super::{
+    layers::{self, Text},
+    source::Source,
+};
 use crate::{Cause, Diagnostic};
 
 /// Changes to what a scene file says, by the same key paths. Cameras, lights and imports are named where the file has a
@@ -13,6 +17,8 @@ use crate::{Cause, Diagnostic};
 pub struct Overrides {
     /// One `key.path = value` a line.
     document: String,
+    /// What goes before everything else.
+    draft: Option<Text>,
 }
 
 impl Overrides {
@@ -37,14 +43,27 @@ impl Overrides {
             let all: Vec<_> = changes.iter().map(AsRef::as_ref).collect();
             errors.push(complaint(&all.join(" --set "), error.message()));
         }
-        if errors.is_empty() { Ok(Self { document }) } else { Err(errors) }
+        if errors.is_empty() { Ok(Self { document, draft: None }) } else { Err(errors) }
     }
 
-    /// The changes as a source, besides the file at `path`.
-    pub(super) fn source<'a>(&'a self, path: &'a Path) -> Source<'a> {
+    /// The same, below a scene file of this text which would be saved at `path`.
+    ///
+    /// # Errors
+    /// The text is no TOML.
+    pub fn below(self, path: impl Into<PathBuf>, text: impl Into<String>) -> Result<Self, Vec<Diagnostic>> {
+        let draft = Text { path: path.into(), text: text.into() };
+        layers::parse(&draft.path, &draft.text)?;
+        Ok(Self { draft: Some(draft), ..self })
+    }
+
+    /// What goes before the file at `path`, the first of which counts.
+    pub(super) fn sources<'a>(&'a self, path: &'a Path) -> Vec<Source<'a>> {
+        let mut sources =
+            self.draft.as_ref().map_or_else(Vec::new, |it| layers::sources(std::slice::from_ref(it)));
         // Parsed before.
         let document = DeTable::parse(&self.document).unwrap_or_else(|_| Spanned::new(0..0, DeTable::new()));
-        Source::command_line(path, &self.document, document)
+        sources.push(Source::command_line(path, &self.document, document));
+        sources
     }
 }
 

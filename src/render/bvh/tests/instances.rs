@@ -24,10 +24,10 @@ fn placements_under_the_top_level_look_like_baked_ones() {
     let meshes = [Arc::new(icosphere(3)), Arc::new(lumpy(3))];
     let instances: Vec<_> = maps()
         .iter()
-        .flat_map(|&to_world| (0..3).map(move |mesh| InstanceGeometry { mesh, to_world }))
+        .flat_map(|&to_world| (0..3).map(move |mesh| InstanceGeometry::solid(mesh, to_world)))
         .collect();
-    let own = Geometry::build_baking(&meshes, &instances, 1);
-    let baked = Geometry::build_baking(&meshes, &instances, usize::MAX);
+    let own = Geometry::build_baking(&meshes, &instances, 1, None);
+    let baked = Geometry::build_baking(&meshes, &instances, usize::MAX, None);
     let ((low, high), (inner_low, inner_high)) = (own.bounds(), baked.bounds());
     assert!(low.cmple(inner_low + 1e-4).all() && high.cmpge(inner_high - 1e-4).all());
     assert!((high - low).length() < 1.5 * (inner_high - inner_low).length());
@@ -59,16 +59,11 @@ fn placements_under_the_top_level_look_like_baked_ones() {
 fn many_placements_cost_the_memory_of_one_mesh() {
     let mesh = lumpy(7);
     assert!(mesh.triangles.len() > 100_000);
-    let single = Geometry::build(
-        &[Arc::new(mesh.clone())],
-        &[InstanceGeometry { mesh: 0, to_world: DAffine3::IDENTITY }],
-    );
+    let single =
+        Geometry::build(&[Arc::new(mesh.clone())], &[InstanceGeometry::solid(0, DAffine3::IDENTITY)]);
     let mut rng = rng(4);
     let instances: Vec<_> = (0..10_000)
-        .map(|_| InstanceGeometry {
-            mesh: 0,
-            to_world: DAffine3::from_translation(in_cube(&mut rng) * 100.0),
-        })
+        .map(|_| InstanceGeometry::solid(0, DAffine3::from_translation(in_cube(&mut rng) * 100.0)))
         .collect();
     let many = Geometry::build(&[Arc::new(mesh)], &instances);
     let extra = many.memory() - single.memory();

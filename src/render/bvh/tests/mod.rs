@@ -104,14 +104,14 @@ fn soup(count: usize, size: f64, rng: &mut Rng) -> MeshGeometry {
 
 /// One mesh, placed once; with `own`, as a placement under the top level.
 fn placed(mesh: MeshGeometry, to_world: DAffine3, own: bool) -> Geometry {
-    let mut instances = vec![InstanceGeometry { mesh: 0, to_world }];
+    let mut instances = vec![InstanceGeometry::solid(0, to_world)];
     if own {
         // A second placement, out of the way, so that the mesh counts as placed many times.
         let size = to_world.transform_vector3(DVec3::ONE).length().max(to_world.translation.length());
         let away = DAffine3::from_translation(DVec3::splat(100.0 * size)) * to_world;
-        instances.push(InstanceGeometry { mesh: 0, to_world: away });
+        instances.push(InstanceGeometry::solid(0, away));
     }
-    Geometry::build_baking(&[Arc::new(mesh)], &instances, if own { 1 } else { usize::MAX })
+    Geometry::build_baking(&[Arc::new(mesh)], &instances, if own { 1 } else { usize::MAX }, None)
 }
 
 fn world(mesh: MeshGeometry) -> Geometry {

@@ -52,7 +52,7 @@ fn only_what_is_seen_is_decoded_and_images_are_shared() {
     let node = scene.nodes.push(Node { light, ..Node::default() });
     scene.roots.push(node);
 
-    let (textures, diagnostics) = load_textures(&scene, 100);
+    let (textures, diagnostics) = load_textures(&scene, 100, None);
     assert!(diagnostics.is_empty(), "{:?}", messages(&diagnostics));
     let (first, second) = (textures.get(base).unwrap(), textures.get(again).unwrap());
     assert!(std::ptr::eq(first.bitmap(), second.bitmap()));
@@ -70,7 +70,7 @@ fn a_node_material_replaces_the_meshes_own() {
     show(&mut scene, Material { metallic: input(1.0, own), ..Material::default() }, true);
     let other = scene.materials.push(Material { opacity: input(1.0, replacing), ..Material::default() });
     scene.nodes[scene.roots[0]].material = Some(other);
-    let (textures, _) = load_textures(&scene, 100);
+    let (textures, _) = load_textures(&scene, 100, None);
     assert!(textures.get(own).is_none() && textures.get(replacing).is_some());
 }
 
@@ -81,7 +81,7 @@ fn failures_are_errors_that_name_the_image() {
     let good = add_texture(&mut scene, "good", png(1, 0));
     let both = Material { coat: input(1.0, bad), emission: input(Vec3::ONE, good), ..Material::default() };
     show(&mut scene, both, true);
-    let (textures, diagnostics) = load_textures(&scene, 100);
+    let (textures, diagnostics) = load_textures(&scene, 100, None);
     assert!(textures.get(bad).is_none() && textures.get(good).is_some());
     assert_eq!(diagnostics.len(), 1);
     assert_eq!(diagnostics[0].severity, Severity::Error);
@@ -95,7 +95,7 @@ fn memory_goes_to_the_first_images() {
         let texture = add_texture(&mut scene, name, png(width, 0));
         show(&mut scene, Material { metallic: input(1.0, texture), ..Material::default() }, true);
     }
-    let (textures, diagnostics) = load_textures(&scene, 100);
+    let (textures, diagnostics) = load_textures(&scene, 100, None);
     let loaded: Vec<bool> = scene.textures.ids().map(|id| textures.get(id).is_some()).collect();
     assert_eq!(loaded, [true, false, true]);
     assert!(diagnostics[0].message.contains("\"b\""), "{:?}", messages(&diagnostics));
@@ -110,8 +110,39 @@ fn repaired_numbers_are_a_warning() {
     let mut scene = Scene::default();
     let texture = add_texture(&mut scene, "glow", ImageSource::Embedded(bytes.into_inner().into()));
     show(&mut scene, Material { emission: input(Vec3::ONE, texture), ..Material::default() }, true);
-    let (textures, diagnostics) = load_textures(&scene, 100);
+    let (textures, diagnostics) = load_textures(&scene, 100, None);
     assert_eq!(textures.get(texture).unwrap().average().x, 0.0);
     assert_eq!((diagnostics.len(), diagnostics[0].severity), (1, Severity::Warning));
     assert!(diagnostics[0].message.contains("\"glow\": 1 values"));
+}
+
+#[test]
+fn images_that_did_not_change_are_taken_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    let write = |value| {
+        image::GrayImage::from_pixel(1, 1, image::Luma([value])).save(&path).unwrap();
+    };
+    write(255);
+    let mut scene = Scene::default();
+    let file = add_texture(&mut scene, "file", ImageSource::File(path.clone()));
+    let embedded = add_texture(&mut scene, "embedded", png(2, 51));
+    for texture in [file, embedded] {
+        show(&mut scene, Material { base_color: input(Vec3::ONE, texture), ..Material::default() }, true);
+    }
+    let (first, _) = load_textures(&scene, 100, None);
+    write(0);
+    for changed in [BTreeSet::new(), BTreeSet::from([path.clone()])] {
+        let before = LoadedBefore { textures: &first, changed: &changed };
+        let (second, diagnostics) = load_textures(&scene, 100, Some(before));
+        assert!(diagnostics.is_empty(), "{:?}", messages(&diagnostics));
+        let same = |id| std::ptr::eq(first.get(id).unwrap().bitmap(), second.get(id).unwrap().bitmap());
+        assert_eq!((same(file), same(embedded)), (changed.is_empty(), true));
+        let value = second.get(file).unwrap().average().x;
+        assert_eq!(value, if changed.is_empty() { 1.0 } else { 0.0 });
+    }
+    // What is taken over counts as much memory as what is loaded.
+    let before = LoadedBefore { textures: &first, changed: &BTreeSet::new() };
+    let (_, diagnostics) = load_textures(&scene, 2, Some(before));
+    assert_eq!(diagnostics.len(), 1);
 }

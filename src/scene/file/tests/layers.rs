@@ -5,7 +5,7 @@ use std::fs;
 use glam::DVec3;
 
 use super::{folder, import};
-use crate::{ImportRequest, LightKind, Overrides, Projection, SceneFile, file::load};
+use crate::{ImportRequest, LightKind, Looked, Overrides, Projection, SceneFile, file::load};
 
 const BASE: &str = r#"
 [[import]]
@@ -135,4 +135,59 @@ fn circles_and_towers_end() {
     fs::write(folder.path().join("3.toml"), "extends = \"0.toml\"").unwrap();
     let errors = super::read(folder.path()).unwrap_err();
     assert!(errors[0].to_string().contains("extends itself"), "{errors:#?}");
+}
+
+/// A draft over `base.toml` and a change from the command line; with the files that were looked for.
+fn drafted(draft: &str) -> (Result<SceneFile, Vec<String>>, Vec<String>) {
+    let folder = folder("extends = \"base.toml\"\n", &["a.glb", "map.png"]);
+    fs::write(folder.path().join("base.toml"), BASE).unwrap();
+    let looked = Looked::default();
+    let request = ImportRequest::new(folder.path().join("scene.toml"));
+    let request = ImportRequest { looked: looked.clone(), ..request };
+    let overrides = Overrides::parse(&["material.Chrome.roughness=0.2"]).unwrap();
+    let found = overrides
+        .below(folder.path().join("look.toml"), draft)
+        .and_then(|overrides| load(&request, &overrides, &import));
+    let prefix = format!("{}/", folder.path().display());
+    let real = format!("{}/", folder.path().canonicalize().unwrap().display());
+    let files = looked.take().iter().map(|path| path.display().to_string()).collect::<Vec<_>>();
+    let files = files.iter().map(|path| path.replace(&real, "").replace(&prefix, "")).collect();
+    (
+        found.map_err(|errors| errors.iter().map(|error| error.to_string().replace(&prefix, "")).collect()),
+        files,
+    )
+}
+
+#[test]
+fn a_draft_lies_over_everything() {
+    let draft = "[[camera]]\nname = \"look\"\ncopy = \"main\"\nyfov = 20\n[material.Chrome]\nroughness = 0.9\n\
+                 [[light]]\nname = \"sun\"\nilluminance = 7\n[render]\ncamera = \"look\"\n";
+    let (file, files) = drafted(draft);
+    let file = file.unwrap();
+    let chrome = file.scene.materials.iter().find(|it| it.name == "Chrome").unwrap();
+    assert_eq!((chrome.roughness.value, chrome.metallic.value), (0.9, 1.0));
+    assert_eq!((file.render.camera.as_deref(), file.render.seed), (Some("look"), Some(3)));
+    let sun = file.scene.lights.iter().find(|it| it.name == "sun").unwrap();
+    assert!(matches!(sun.kind, LightKind::Directional { illuminance: 7.0, .. }), "{:?}", sun.kind);
+    assert!(
+        ["scene.toml", "base.toml", "a.glb"].iter().all(|name| files.iter().any(|it| it == name)),
+        "{files:?}"
+    );
+}
+
+#[test]
+fn a_draft_is_named_where_it_is_wrong() {
+    assert_eq!(
+        drafted("[material.Chrome]\nroughness = 2\n").0.unwrap_err()[0],
+        "look.toml:2:13: error: material.\"Chrome\".roughness: must be at least 0 and at most 1, is 2"
+    );
+    let (syntax, _) = drafted("[material\n");
+    assert!(syntax.unwrap_err()[0].starts_with("look.toml:1:"));
+}
+
+#[test]
+fn files_that_are_not_there_are_noted_too() {
+    let (found, files) = drafted("[material.Chrome]\nbase_color_texture = \"sub/missing.png\"\n");
+    assert!(found.unwrap_err()[0].contains("missing.png"));
+    assert!(files.iter().any(|it| it == "sub/missing.png"), "{files:?}");
 }
