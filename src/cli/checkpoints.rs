@@ -15,7 +15,7 @@ use crate::{
     shard::Shard,
 };
 
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub(super) struct Checkpoints {
     /// Save the render so far, again and again and at its end; --resume goes on with it
     #[arg(long, value_name = "FILE")]

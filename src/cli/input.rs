@@ -7,7 +7,7 @@ use ajar_scene::{Choice, Diagnostic, Moment, SceneFile, Severity};
 use super::arguments::{parse_bytes, parse_fps, parse_number};
 use crate::session::{self, LoadOptions, Loaded};
 
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub(super) struct Input {
     /// scene.toml, or any file that `ajar formats` lists
     pub file: PathBuf,
@@ -27,7 +27,7 @@ pub(super) struct Input {
     chosen: Chosen,
 }
 
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 struct Chosen {
     /// Show this variant of the asset; may be given several times
     #[arg(long, value_name = "NAME")]
@@ -51,6 +51,13 @@ impl Chosen {
 }
 
 impl Input {
+    /// The same file at a frame.
+    pub fn at_frame(&self, frame: i64) -> Self {
+        let mut input = self.clone();
+        input.chosen.frame = Some(frame as f64);
+        input
+    }
+
     /// Opens the file. `size` is that of the film where the command line states it.
     pub fn load(&self, size: Option<[u32; 2]>) -> Result<Loaded, Vec<Diagnostic>> {
         let choice = self.chosen.choice();

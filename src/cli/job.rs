@@ -1,12 +1,12 @@
 //! What to render and where to write it: the command line over the scene file over the defaults.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::PathBuf};
 
 use ajar_integrators::{Integrator, Settings, Window, integrators, mlt::mutations, stop::StopRules};
 use ajar_output::ToneMap;
 use ajar_scene::{Cause, Diagnostic, OutputSettings, RenderSettings};
 
-use super::render::Args;
+use super::{frames::numbered, render::Args};
 use crate::{
     checkpoint::Saved,
     image::{Aov, Destination, Form},
@@ -168,6 +168,10 @@ fn destination(args: &Args, output: &OutputSettings) -> Result<Destination, Diag
         ..output.clone()
     };
     let (exr, png) = session::output_paths(&args.input.file, &merged);
+    let number = |path: PathBuf| match args.number {
+        Some(frame) => numbered(&path, frame),
+        None => path,
+    };
     let tone_map = args.tone_map.as_deref().or(output.tone_map.as_deref()).unwrap_or("agx");
     let names = args.aov.clone().or_else(|| output.aov.clone()).unwrap_or_default();
     let form = Form {
@@ -176,5 +180,5 @@ fn destination(args: &Args, output: &OutputSettings) -> Result<Destination, Diag
         aovs: names.iter().map(|name| Aov::parse(name)).collect::<Result<_, _>>()?,
         float: args.float || output.float.unwrap_or(false),
     };
-    Ok(Destination { exr, png, form })
+    Ok(Destination { exr: number(exr), png: number(png), form })
 }

@@ -6,6 +6,7 @@ mod convert;
 mod diff;
 mod exit;
 mod formats;
+mod frames;
 mod input;
 mod inspect;
 mod job;

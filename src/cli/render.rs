@@ -14,6 +14,7 @@ use super::{
     Exit,
     arguments::{parse_bounds, parse_crop, parse_size},
     checkpoints::Checkpoints,
+    frames::{Frames, parse_frames},
     input::Input,
     job::Job,
     log::Format,
@@ -28,7 +29,7 @@ use crate::{
     session::{self, Loaded, Start, Status},
 };
 
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 #[command(after_help = super::EXIT_CODES)]
 pub(super) struct Args {
     #[command(flatten)]
@@ -36,6 +37,18 @@ pub(super) struct Args {
     /// Image to write; a PNG preview goes beside it [default: <name>.exr in the current folder]
     #[arg(short, long, value_name = "OUT.exr")]
     pub output: Option<PathBuf>,
+    /// Render these frames, one image each: 1:10x2,15; the number replaces #### or %04d of the image's name
+    #[arg(
+        long,
+        value_name = "FRAMES",
+        value_parser = parse_frames,
+        allow_hyphen_values = true,
+        conflicts_with_all = ["frame", "at", "checkpoint", "resume", "shard", "stats_json"]
+    )]
+    frames: Option<Frames>,
+    /// The one of them that is rendered.
+    #[arg(skip)]
+    pub number: Option<i64>,
     /// Camera to look through [default: the first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
@@ -113,17 +126,30 @@ impl Args {
 }
 
 pub(super) fn run(args: &Args, log: Format) -> Exit {
-    execute(args, log).unwrap_or_else(|diagnostics| {
+    all(args, log).unwrap_or_else(|diagnostics| {
         log.messages(&diagnostics, args.input.least());
         Exit::after(&diagnostics, args.input.least())
     })
 }
 
-fn execute(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
+/// Renders one image, or one a frame until one of them is not done.
+fn all(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
     if let Some(threads) = args.threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
         pool.map_err(|e| fail(Cause::Resource, format!("cannot start {threads} threads: {e}")))?;
     }
+    let Some(frames) = &args.frames else { return execute(args, log) };
+    for number in frames.numbers() {
+        let input = args.input.at_frame(number);
+        let exit = execute(&Args { input, number: Some(number), ..args.clone() }, log)?;
+        if exit != Exit::Ok {
+            return Ok(exit);
+        }
+    }
+    Ok(Exit::Ok)
+}
+
+fn execute(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
     let signals = Signals::new().map_err(|e| fail(Cause::System, format!("cannot handle signals: {e}")))?;
     let (ready, done) = Ready::new(args, log)?;
     if args.dry_run {
