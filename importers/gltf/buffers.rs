@@ -10,7 +10,7 @@ use super::{Context, at, meshopt, uri};
 /// All buffers. One that cannot be had is an error only for what needs it.
 pub(super) struct Buffers {
     loaded: Vec<Result<Vec<u8>, Diagnostic>>,
-    /// Buffer views that were compressed, by index.
+    /// Buffer views that were compressed, or made of what was, by index.
     decoded: HashMap<usize, Result<Vec<u8>, Diagnostic>>,
     asked_for: RefCell<Vec<bool>>,
 }
@@ -72,6 +72,11 @@ impl Buffers {
             Diagnostic::error(message).element(element)
         })?;
         Ok(View { bytes, stride })
+    }
+
+    /// Makes `bytes` the content of the new `bufferViews[index]`.
+    pub fn add(&mut self, index: usize, bytes: Vec<u8>) {
+        self.decoded.insert(index, Ok(bytes));
     }
 
     /// Warns about buffers that cannot be had and that nothing asked for.

@@ -92,14 +92,21 @@ fn head(path: &Path) -> Result<Vec<u8>, Diagnostic> {
 
 /// Refuses what no decoder of ours reads. The bytes decide, not the media type, which is often wrong.
 fn recognize(bytes: &[u8]) -> Result<(), Diagnostic> {
-    const KNOWN: [&[u8]; 6] =
-        [b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"#?", b"\x76\x2f\x31\x01", b"II*\0", b"MM\0*"];
+    const KNOWN: [&[u8]; 7] = [
+        b"\x89PNG\r\n\x1a\n",
+        b"\xff\xd8\xff",
+        b"#?",
+        b"\x76\x2f\x31\x01",
+        b"II*\0",
+        b"MM\0*",
+        b"\xabKTX 20\xbb\r\n\x1a\n",
+    ];
     let webp = bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP");
     if webp || KNOWN.iter().any(|magic| bytes.starts_with(magic)) {
         Ok(())
-    } else if bytes.starts_with(b"\xabKTX ") || bytes.starts_with(b"sB") {
-        Err(Diagnostic::error("KTX2 and Basis images are not supported yet")
-            .hint("convert it to PNG or WebP"))
+    } else if bytes.starts_with(b"\xabKTX 11") || bytes.starts_with(b"sB") {
+        Err(Diagnostic::error("KTX 1 and plain Basis images are not supported")
+            .hint("convert it to KTX2, PNG or WebP"))
     } else {
         Err(Diagnostic::error("it is of no known image format"))
     }

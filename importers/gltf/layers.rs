@@ -1,11 +1,15 @@
-//! What extensions add to materials: transmission, volume, index of refraction, specular, clear coat, anisotropy.
+//! What extensions add to materials: transmission, volume, index of refraction, specular, clear coat; more in `effects`.
 //! Sources: the README of each extension in the repository of the specification.
 
-use ajar_scene::{Channel, Diagnostic, Input, Material};
+use ajar_scene::{Channel, Diagnostic, Material};
 use glam::Vec3;
 use serde::Deserialize;
 
-use super::{material::Reader, texture::TextureInfo};
+use super::{
+    effects,
+    material::{NormalInfo, Reader},
+    texture::TextureInfo,
+};
 
 /// Stands for the special index 0 of KHR_materials_ior, which reflects everything: F₀ = 0.996.
 const MIRROR_IOR: f32 = 1000.0;
@@ -47,15 +51,7 @@ struct Clearcoat {
     clearcoat_texture: Option<TextureInfo>,
     clearcoat_roughness_factor: f32,
     clearcoat_roughness_texture: Option<TextureInfo>,
-    clearcoat_normal_texture: Option<TextureInfo>,
-}
-
-#[derive(Deserialize, Default)]
-#[serde(default, rename_all = "camelCase")]
-struct Anisotropy {
-    anisotropy_strength: f32,
-    anisotropy_rotation: f32,
-    anisotropy_texture: Option<TextureInfo>,
+    clearcoat_normal_texture: Option<NormalInfo>,
 }
 
 /// Adds the layers that the material's extensions describe.
@@ -64,7 +60,7 @@ pub(super) fn add(reader: &mut Reader, material: &mut Material) -> Result<(), Di
     transmission(reader, material)?;
     specular(reader, material)?;
     clearcoat(reader, material)?;
-    anisotropy(reader, material)
+    effects::add(reader, material)
 }
 
 fn ior(reader: &mut Reader, material: &mut Material) {
@@ -89,17 +85,23 @@ fn ior(reader: &mut Reader, material: &mut Material) {
 
 fn transmission(reader: &mut Reader, material: &mut Material) -> Result<(), Diagnostic> {
     const NAME: &str = "extensions.KHR_materials_transmission";
-    let volume: Volume = reader.extension("KHR_materials_volume").unwrap_or_default();
     let Some(Transmission { transmission_factor, transmission_texture }) =
         reader.extension("KHR_materials_transmission")
     else {
+        volume(reader, material);
         return Ok(());
     };
     let fields = [&*format!("{NAME}.transmissionFactor"), &*format!("{NAME}.transmissionTexture")];
     material.transmission = reader.scalar(transmission_factor, transmission_texture, Channel::R, fields)?;
-    material.thin_walled = volume.thickness_factor.is_nan() || volume.thickness_factor <= 0.0;
-    if material.thin_walled {
-        return Ok(());
+    material.thin_walled = !volume(reader, material);
+    Ok(())
+}
+
+/// Whether the surface bounds a volume; sets what that absorbs.
+fn volume(reader: &mut Reader, material: &mut Material) -> bool {
+    let volume: Volume = reader.extension("KHR_materials_volume").unwrap_or_default();
+    if volume.thickness_factor.is_nan() || volume.thickness_factor <= 0.0 {
+        return false;
     }
     if let Some(color) = volume.attenuation_color {
         let field = "extensions.KHR_materials_volume.attenuationColor";
@@ -110,10 +112,10 @@ fn transmission(reader: &mut Reader, material: &mut Material) -> Result<(), Diag
             material.attenuation_distance = distance;
         } else {
             let element = format!("{}.extensions.KHR_materials_volume.attenuationDistance", reader.element);
-            reader.context.report.approximate(element, "the distance is not positive; nothing is absorbed");
+            reader.context.report.warn(element, "the distance is not positive; nothing is absorbed");
         }
     }
-    Ok(())
+    true
 }
 
 fn specular(reader: &mut Reader, material: &mut Material) -> Result<(), Diagnostic> {
@@ -170,32 +172,7 @@ fn clearcoat(reader: &mut Reader, material: &mut Material) -> Result<(), Diagnos
         [&*format!("{NAME}.clearcoatRoughnessFactor"), &*format!("{NAME}.clearcoatRoughnessTexture")];
     let (factor, map) = (coat.clearcoat_roughness_factor, coat.clearcoat_roughness_texture);
     material.coat_roughness = reader.scalar(factor, map, Channel::G, fields)?;
-    if coat.clearcoat_normal_texture.is_some() {
-        let element = format!("{}.{NAME}.clearcoatNormalTexture", reader.element);
-        reader.context.report.warn(element, "normal maps of coats are dropped");
-    }
-    Ok(())
-}
-
-fn anisotropy(reader: &mut Reader, material: &mut Material) -> Result<(), Diagnostic> {
-    const NAME: &str = "extensions.KHR_materials_anisotropy";
-    let Some(found): Option<Anisotropy> = reader.extension("KHR_materials_anisotropy") else { return Ok(()) };
-    if found.anisotropy_texture.is_some() {
-        let element = format!("{}.{NAME}.anisotropyTexture", reader.element);
-        reader
-            .context
-            .report
-            .warn(element, "the directions of the anisotropy texture are dropped, its strength is used");
-    }
-    let fields = [&*format!("{NAME}.anisotropyStrength"), &*format!("{NAME}.anisotropyTexture")];
-    material.anisotropy =
-        reader.scalar(found.anisotropy_strength, found.anisotropy_texture, Channel::B, fields)?;
-    if found.anisotropy_rotation.is_finite() {
-        material.anisotropy_rotation = found.anisotropy_rotation;
-    } else {
-        material.anisotropy = Input::constant(0.0);
-        let element = format!("{}.{NAME}.anisotropyRotation", reader.element);
-        reader.context.report.warn(element, "the rotation is not finite; the anisotropy is dropped");
-    }
+    let field = format!("{NAME}.clearcoatNormalTexture");
+    material.coat_normal_map = reader.normal_map(coat.clearcoat_normal_texture, &field)?;
     Ok(())
 }

@@ -81,6 +81,25 @@ impl Default for EmissiveStrength {
     }
 }
 
+/// How a material refers to a normal map.
+#[derive(Deserialize)]
+pub(super) struct NormalInfo {
+    #[serde(flatten)]
+    info: TextureInfo,
+    #[serde(default = "one")]
+    scale: f32,
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+impl From<&json::material::NormalTexture> for NormalInfo {
+    fn from(source: &json::material::NormalTexture) -> Self {
+        Self { info: TextureInfo::from(source), scale: source.scale }
+    }
+}
+
 impl<'a, 'b> Reader<'a, 'b> {
     fn new(
         asset: &'a Asset,
@@ -117,7 +136,8 @@ impl<'a, 'b> Reader<'a, 'b> {
             cull_back: !source.double_sided,
             opacity,
             alpha_mode,
-            normal_map: self.normal_map(source)?,
+            normal_map: self
+                .normal_map(source.normal_texture.as_ref().map(NormalInfo::from), "normalTexture")?,
             unlit: self.extensions.contains_key("KHR_materials_unlit"),
             ..base
         };
@@ -170,13 +190,17 @@ impl<'a, 'b> Reader<'a, 'b> {
         self.color(factor, source.emissive_texture.as_ref().map(TextureInfo::from), "emissiveTexture")
     }
 
-    fn normal_map(&mut self, source: &json::Material) -> Result<Option<NormalMap>, Diagnostic> {
-        let Some(info) = &source.normal_texture else { return Ok(None) };
-        let texture = self.texture(Some(TextureInfo::from(info)), ColorSpace::Raw, "normalTexture")?;
-        let mut scale = info.scale;
+    /// A normal map of this material.
+    pub fn normal_map(
+        &mut self,
+        info: Option<NormalInfo>,
+        field: &str,
+    ) -> Result<Option<NormalMap>, Diagnostic> {
+        let Some(NormalInfo { info, mut scale }) = info else { return Ok(None) };
+        let texture = self.texture(Some(info), ColorSpace::Raw, field)?;
         if !scale.is_finite() {
-            let element = format!("{}.normalTexture.scale", self.element);
-            self.context.report.approximate(element, "the scale is not finite and is taken as 1");
+            let element = format!("{}.{field}.scale", self.element);
+            self.context.report.warn(element, "the scale is not finite and is taken as 1");
             scale = 1.0;
         }
         Ok(texture.map(|texture| NormalMap { texture, scale }))

@@ -18,6 +18,8 @@ mod check;
 mod container;
 mod deform;
 mod document;
+mod draco;
+mod effects;
 mod extensions;
 mod gloss;
 mod image;
@@ -136,8 +138,9 @@ pub(crate) fn is_container(bytes: &[u8]) -> bool {
 }
 
 fn convert(file: Vec<u8>, mut context: Context) -> Result<Imported, Diagnostic> {
-    let asset = load(file, &mut context)?;
+    let mut asset = load(file, &mut context)?;
     check::indices(&asset.root)?;
+    draco::expand(&mut asset, &mut context)?;
     let parents = check::parents(&asset.root)?;
 
     let mut scene = Scene::default();

@@ -67,7 +67,7 @@ impl Transform {
     }
 }
 
-/// EXT_texture_webp and extensions of the same shape.
+/// KHR_texture_basisu, EXT_texture_webp and extensions of the same shape.
 #[derive(Deserialize)]
 struct Source {
     source: Option<u32>,
@@ -98,9 +98,13 @@ impl Textures {
         let texture = at(&asset.root.textures, index, "textures", &format!("{element}.index"))?;
         let own = format!("textures[{index}]");
         let others = texture.extensions.as_ref().map(|e| &e.others);
-        let webp: Option<Source> = extensions::read(others, "EXT_texture_webp", &own, &mut context.report);
+        let mut other = |name: &str| -> Option<usize> {
+            let found: Option<Source> = extensions::read(others, name, &own, &mut context.report);
+            found?.source.map(|source| source as usize)
+        };
+        let better = other("KHR_texture_basisu").or_else(|| other("EXT_texture_webp"));
         let plain = Some(texture.source.value()).filter(|&source| source != u32::MAX as usize);
-        let Some(image) = webp.and_then(|webp| webp.source).map(|source| source as usize).or(plain) else {
+        let Some(image) = better.or(plain) else {
             context.report.warn(own, "the texture has no image that can be read and is dropped");
             return Ok(None);
         };

@@ -105,7 +105,8 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// Reads a text file of at most `limit` bytes. The flag tells that it was not UTF-8 and lost characters.
+/// Reads a text file of at most `limit` bytes: UTF-8, UTF-16 that begins with its mark, or else Windows-1252's common part
+/// Latin-1, in which every byte is a character. The flag tells of the last.
 pub(super) fn read(path: &Path, limit: u64) -> Result<(String, bool), Diagnostic> {
     let fail = |message: String| Diagnostic::error(message).in_file(path);
     let unreadable = |e: std::io::Error| fail(format!("cannot be read: {e}"));
@@ -123,8 +124,16 @@ pub(super) fn read(path: &Path, limit: u64) -> Result<(String, bool), Diagnostic
         let error = fail(format!("is larger than the memory limit of {limit} bytes"));
         return Err(error.because(Cause::Resource));
     }
-    if bytes.starts_with(b"\xFE\xFF") || bytes.starts_with(b"\xFF\xFE") {
-        return Err(fail("is UTF-16 text".to_owned()).at(1, 1).hint("save it as UTF-8"));
+    if let Some(order) = [u16::from_be_bytes as fn([u8; 2]) -> u16, u16::from_le_bytes]
+        .into_iter()
+        .find(|order| bytes.get(..2).is_some_and(|mark| order([mark[0], mark[1]]) == 0xFEFF))
+    {
+        let units = bytes[2..].as_chunks().0.iter().map(|&pair| order(pair));
+        let text: Result<String, _> = char::decode_utf16(units).collect();
+        return match text {
+            Ok(text) if !text.contains('\0') => Ok((text, false)),
+            _ => Err(fail("is broken UTF-16 text".to_owned()).at(1, 1).hint("save it as UTF-8")),
+        };
     }
     if let Some(at) = bytes.iter().position(|&b| b == 0) {
         let line = 1 + bytes[..at].iter().filter(|&&b| b == b'\n').count();
@@ -135,7 +144,7 @@ pub(super) fn read(path: &Path, limit: u64) -> Result<(String, bool), Diagnostic
     }
     Ok(match String::from_utf8(bytes) {
         Ok(text) => (text, false),
-        Err(e) => (String::from_utf8_lossy(e.as_bytes()).into_owned(), true),
+        Err(e) => (e.as_bytes().iter().map(|&byte| char::from(byte)).collect(), true),
     })
 }
 

@@ -11,6 +11,9 @@ use super::{
     texture::{Map, Textures},
 };
 
+/// Roughness of sheen, which the format does not state.
+const SHEEN_ROUGHNESS: f32 = 0.3;
+
 /// Turns a material as written into one of ours, and its images into textures.
 pub(super) fn convert(mut of: Definition, textures: &mut Textures<'_>) -> Material {
     let mut converter = Converter { of: &mut of, textures };
@@ -37,6 +40,7 @@ pub(super) fn convert(mut of: Definition, textures: &mut Textures<'_>) -> Materi
         }
     }
     converter.coat(&mut material);
+    converter.sheen(&mut material);
     converter.normals(&mut material);
     converter.report_leftovers();
     material
@@ -155,7 +159,7 @@ impl Converter<'_, '_> {
     fn colors(&mut self, material: &mut Material, illum: u8) {
         let (kd, kd_map) = (self.of.source.diffuse, self.of.source.diffuse_texture.take());
         let (ks, ks_map) = (self.of.source.specular, self.of.source.specular_texture.take());
-        let extended = ["Pr", "map_Pr", "Pm", "map_Pm", "Pc"]
+        let extended = ["Pr", "map_Pr", "Pm", "map_Pm", "Pc", "Ps", "map_Ps"]
             .iter()
             .any(|p| self.of.source.unknown_param.contains_key(*p));
         let base = self.color("Kd", kd, kd_map, material.base_color.value);
@@ -202,6 +206,13 @@ impl Converter<'_, '_> {
     fn coat(&mut self, material: &mut Material) {
         material.coat = self.scalar("Pc").unwrap_or(material.coat);
         material.coat_roughness = self.scalar("Pcr").unwrap_or(material.coat_roughness);
+    }
+
+    /// The extension says no more than how much.
+    fn sheen(&mut self, material: &mut Material) {
+        let Some(sheen) = self.scalar("Ps") else { return };
+        material.sheen_color = Input { value: Vec3::splat(sheen.value), texture: sheen.texture };
+        material.sheen_roughness = Input::constant(SHEEN_ROUGHNESS);
     }
 
     /// `norm` is a normal map; what `map_Bump` names is one if its file says so, a height map otherwise.

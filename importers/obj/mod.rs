@@ -22,6 +22,7 @@
 //! | `Ks`, `map_Ks` | `illum` 0, 1: no highlight; else weight 2·max(Ks) up to 1 (0.5 is an ordinary dielectric, as Blender writes it) and colour; absent: none, or an ordinary dielectric where the PBR extension is used |
 //! | `Ns` | roughness (2 / (Ns + 2))^¼, 0 from 1000 on; absent: 0 for mirrors and glass, else 0.5 |
 //! | `Pr`, `Pm`, `Pc`, `Pcr`, `aniso`, `anisor`, all but the last with map | roughness (wins over `Ns`), metal, coat, its roughness, anisotropy, its rotation in turns |
+//! | `Ps`, `map_Ps` | grey sheen of roughness 0.3 |
 //! | `Ke`, `map_Ke` | emission in cd/m², both sides: the format has no front |
 //! | `d`, `Tr` = 1 − d | opacity, as coverage; `d` wins |
 //! | `map_d` | mask at 0.5, or factor of `d` where d < 1; read from alpha if it is the file of `map_Kd`, else from red |
@@ -29,7 +30,7 @@
 //! | `illum` 3, 5, 8 | mirror: metal of colour Kd + Ks and weight Ks / (Kd + Ks), unless `Pm` is given |
 //! | `illum` 4, 6, 7, 9 | glass of tint `Tf` where `Ni` > 1 (or is absent and `illum` is 6 or 7, or d < 1); `d` is then its transparency, already said |
 //! | `norm`, and `map_Bump` or `bump` of a file named like a normal map | normal map of scale `-bm` |
-//! | other `map_Bump`, `map_Ns`, `Ps`, `disp`, `refl`, `decal`, … | dropped with a warning |
+//! | other `map_Bump`, `map_Ns`, `disp`, `refl`, `decal`, … | dropped with a warning |
 //! | `Ka`, `map_Ka` | ignored with a note |
 //!
 //! A colour or weight of 0 with a map that can be read is taken as 1, with a warning. Texture options: see `texture.rs`.
@@ -44,7 +45,7 @@ mod texture;
 
 use std::collections::{HashMap, HashSet};
 
-use ajar_scene::{Diagnostic, Feature, Id, ImportRequest, Imported, Importer, Loss, Material, Severity};
+use ajar_scene::{Diagnostic, Feature, Id, ImportRequest, Imported, Importer, Material, Severity};
 
 use crate::report::Report;
 
@@ -60,12 +61,16 @@ const FEATURES: &[Feature] = &[
     Feature { name: "vt", support: "one set" },
     Feature { name: "vertex colours", support: "r g b after the coordinates, sRGB" },
     Feature { name: "points, lines, curves, surfaces", support: "dropped with a warning" },
+    Feature {
+        name: "encodings",
+        support: "UTF-8, UTF-16 with a mark, else Latin-1; all line ends, continued lines",
+    },
     Feature { name: "units, up axis", support: "the format states none: metres, Y up" },
     Feature { name: "MTL colours", support: "Kd, Ks, Ke, Tf, Ns, Ni, d, Tr, illum; Ka ignored" },
-    Feature { name: "MTL PBR extension", support: "Pr, Pm, Pc, Pcr, aniso, anisor; Ps (sheen) dropped" },
+    Feature { name: "MTL PBR extension", support: "Pr, Pm, Pc, Pcr, Ps, aniso, anisor" },
     Feature {
         name: "MTL maps",
-        support: "map_Kd, map_Ks, map_Ke, map_d, map_Pr, map_Pm, map_Pc, map_Pcr, norm",
+        support: "map_Kd, map_Ks, map_Ke, map_d, map_Pr, map_Pm, map_Pc, map_Pcr, map_Ps, norm",
     },
     Feature { name: "map_Bump", support: "normal maps, told by the file's name; height maps dropped" },
     Feature { name: "map options", support: "-s -o -mm -bm -clamp -imfchan -colorspace; others dropped" },
@@ -98,8 +103,7 @@ impl Importer for Obj {
         report.add(Diagnostic::note("OBJ states no units or up axis; taken as metres, Y up").in_file(file));
         let (text, damaged) = lines::read(file, request.memory_limit)?;
         if damaged {
-            let warning = Diagnostic::warning("is not UTF-8; names may not be found");
-            report.add(warning.losing(Loss::Approximated).in_file(file));
+            report.add(Diagnostic::note("is not UTF-8; read as Latin-1").in_file(file));
         }
         let geometry = geometry::parse(&text, file, request.memory_limit, &mut report)?;
         drop(text);

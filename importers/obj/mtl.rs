@@ -26,9 +26,9 @@ const COLORS: [&str; 5] = ["Ka", "Kd", "Ks", "Ke", "Tf"];
 /// Statements that are one number.
 const NUMBERS: [&str; 11] = ["Ns", "Ni", "d", "Tr", "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"];
 /// Statements that name an image.
-const MAPS: [&str; 13] = [
+const MAPS: [&str; 14] = [
     "map_Ka", "map_Kd", "map_Ks", "map_Ke", "map_Ns", "map_d", "map_Bump", "bump", "norm", "map_Pr",
-    "map_Pm", "map_Pc", "map_Pcr",
+    "map_Pm", "map_Pc", "map_Pcr", "map_Ps",
 ];
 
 /// Reads all materials of a library; what cannot be read of it is reported.

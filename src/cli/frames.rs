@@ -1,66 +1,62 @@
-//! `--frames`: which frames are rendered, and the names of their images.
+//! `--frames`: which frames of an animation to render, and the file of each.
 
 use std::path::{Path, PathBuf};
 
-/// Most frames of one command.
-const MOST: usize = 1_000_000;
+use ajar_output::frame_path;
+use ajar_scene::{Cause, Diagnostic};
 
-/// Frames in the order in which they are rendered.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Frames(Vec<i64>);
+/// Longer lists are mistakes.
+const MOST: usize = 100_000;
 
-impl Frames {
-    pub fn numbers(&self) -> impl Iterator<Item = i64> {
-        self.0.iter().copied()
-    }
-}
+/// Frames in the order in which they are rendered, each once.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Frames(pub Vec<i32>);
 
-/// `1:10x2,15` are the frames 1, 3, 5, 7, 9 and 15, as in `usdrecord`.
+/// Reads `1:10x2,15`: frames and ranges `FIRST:LAST`, which `xSTEP` thins out.
 pub(super) fn parse_frames(text: &str) -> Result<Frames, String> {
+    let wrong = || "give frames and ranges, with a step if need be: 1:10x2,15".to_string();
     let mut frames = Vec::new();
     for part in text.split(',') {
-        let (range, step) = part.split_once('x').unwrap_or((part, "1"));
-        let (first, last) = range.split_once(':').unwrap_or((range, range));
-        let numbers = (first.trim().parse::<i64>(), last.trim().parse::<i64>(), step.trim().parse::<usize>());
-        let (Ok(first), Ok(last), Ok(step @ 1..)) = numbers else {
-            return Err("give frames as 1:10, 1:10x2 or 1:10x2,15".into());
+        let (range, step) = match part.split_once('x') {
+            Some((range, step)) => (range, step.trim().parse().map_err(|_| wrong())?),
+            None => (part, 1i32),
         };
-        let room = MOST - frames.len();
-        frames.extend((first..=last).step_by(step).take(room + 1));
-        if frames.len() > MOST {
-            return Err(format!("more than {MOST} frames"));
+        let (first, last) = range.split_once(':').unwrap_or((range, range));
+        let [first, last]: [i32; 2] = match [first, last].map(|end| end.trim().parse()) {
+            [Ok(first), Ok(last)] if step > 0 => [first, last],
+            _ => return Err(wrong()),
+        };
+        // Backwards where the range says so.
+        let length = i64::from(last) - i64::from(first);
+        let count = length.unsigned_abs() / u64::from(step.unsigned_abs()) + 1;
+        if count > (MOST - frames.len()) as u64 {
+            return Err(format!("these are more than {MOST} frames"));
         }
+        frames.extend(
+            (0..count as i64).map(|i| (i64::from(first) + length.signum() * i * i64::from(step)) as i32),
+        );
     }
-    if frames.is_empty() {
-        return Err("there are no frames from a number to a smaller one".into());
-    }
+    let mut met = std::collections::HashSet::new();
+    frames.retain(|frame| met.insert(*frame));
     Ok(Frames(frames))
 }
 
-/// The path with the number of a frame: in place of `####` or `%04d` of the file's name, else before the extension.
-pub(super) fn numbered(path: &Path, frame: i64) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let number = |width: usize| format!("{frame:0width$}");
-    let named = match place(&name) {
-        Some((start, end, width)) => format!("{}{}{}", &name[..start], number(width), &name[end..]),
-        None => match name.rsplit_once('.') {
-            Some((stem, extension)) => format!("{stem}.{}.{extension}", number(4)),
-            None => format!("{name}.{}", number(4)),
-        },
-    };
-    path.with_file_name(named)
+/// The file of a frame of several: all need one of their own.
+///
+/// # Errors
+/// The name has no place for the number.
+pub(super) fn place(template: &Path, frame: i32) -> Result<PathBuf, Diagnostic> {
+    frame_path(template, frame).ok_or_else(|| {
+        let message = format!("all frames would be written to {}", template.display());
+        Diagnostic::error(message)
+            .because(Cause::Usage)
+            .hint("give the number a place in the name: -o out.####.exr or -o out.%04d.exr")
+    })
 }
 
-/// Where a name wants the number, from byte to byte, and with how many digits.
-fn place(name: &str) -> Option<(usize, usize, usize)> {
-    if let Some(start) = name.find('#') {
-        let width = name[start..].bytes().take_while(|&byte| byte == b'#').count();
-        return Some((start, start + width, width));
-    }
-    let start = name.find('%')?;
-    let digits = name[start + 1..].split_once('d')?.0;
-    let width = if digits.is_empty() { 0 } else { digits.parse().ok().filter(|width| *width <= 20)? };
-    Some((start, start + digits.len() + 2, width))
+/// The name for frames where none is given.
+pub(super) fn default_template(exr: &Path) -> PathBuf {
+    exr.with_extension("####.exr")
 }
 
 #[cfg(test)]
@@ -68,24 +64,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_are_ranges_with_steps() {
-        let frames = |text| parse_frames(text).map(|frames| frames.numbers().collect::<Vec<_>>());
+    fn frames_and_ranges() {
+        let frames = |text: &str| parse_frames(text).map(|frames| frames.0);
+        assert_eq!(frames("1:10x2,15"), Ok(vec![1, 3, 5, 7, 9, 15]));
         assert_eq!(frames("7"), Ok(vec![7]));
-        assert_eq!(frames("1:10x3,15"), Ok(vec![1, 4, 7, 10, 15]));
-        assert_eq!(frames("-2:0"), Ok(vec![-2, -1, 0]));
-        for bad in ["", "a", "1:", "1:5x0", "5:1", "1:9000000000000", "1.5"] {
-            assert!(frames(bad).is_err(), "{bad}");
+        assert_eq!(frames("3:1,2,-1"), Ok(vec![3, 2, 1, -1]));
+        assert_eq!(frames(" -2 : 2 x 3"), Ok(vec![-2, 1]));
+        for bad in ["", "a", "1:", ":3", "1:5x0", "1:5x-1", "1,,2", "1.5", "1:2:3", "0:2147483647"] {
+            assert!(parse_frames(bad).is_err(), "{bad}");
         }
     }
 
     #[test]
-    fn images_are_numbered() {
-        let named = |name: &str| numbered(Path::new(name), 7).to_string_lossy().into_owned();
-        assert_eq!(named("out.####.exr"), "out.0007.exr");
-        assert_eq!(named("a#b/out.##.exr"), "a#b/out.07.exr");
-        assert_eq!(named("out_%03d.exr"), "out_007.exr");
-        assert_eq!(named("out%d.exr"), "out7.exr");
-        assert_eq!(named("50%/out.exr"), "50%/out.0007.exr");
-        assert_eq!(named("out"), "out.0007");
+    fn each_frame_has_a_file() {
+        assert_eq!(place(Path::new("a.####.exr"), 7).unwrap(), Path::new("a.0007.exr"));
+        assert_eq!(place(&default_template(Path::new("chair.exr")), 7).unwrap(), Path::new("chair.0007.exr"));
+        assert_eq!(place(Path::new("a.exr"), 7).unwrap_err().cause, Cause::Usage);
     }
 }

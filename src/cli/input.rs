@@ -51,13 +51,6 @@ impl Chosen {
 }
 
 impl Input {
-    /// The same file at a frame.
-    pub fn at_frame(&self, frame: i64) -> Self {
-        let mut input = self.clone();
-        input.chosen.frame = Some(frame as f64);
-        input
-    }
-
     /// Opens the file. `size` is that of the film where the command line states it.
     pub fn load(&self, size: Option<[u32; 2]>) -> Result<Loaded, Vec<Diagnostic>> {
         let choice = self.chosen.choice();
@@ -73,6 +66,18 @@ impl Input {
     fn options<'a>(&'a self, size: Option<[u32; 2]>, choice: &'a Choice) -> LoadOptions<'a> {
         let Self { set, strict, allow, memory_limit, .. } = self;
         LoadOptions { size, set, strict: *strict, allow, memory_limit: *memory_limit, choice }
+    }
+
+    /// The same at a frame.
+    pub fn at_frame(&self, frame: i32) -> Self {
+        let chosen = Chosen { frame: Some(frame.into()), ..self.chosen.clone() };
+        Self { chosen, ..self.clone() }
+    }
+
+    /// The frame asked for, if it is a whole one.
+    pub fn frame(&self) -> Option<i32> {
+        let frame = self.chosen.frame?;
+        (frame.fract() == 0.0 && frame.abs() <= f64::from(i32::MAX)).then_some(frame as i32)
     }
 
     /// The least severity that makes a file unfit.

@@ -1,12 +1,12 @@
 //! What to render and where to write it: the command line over the scene file over the defaults.
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::collections::BTreeMap;
 
 use ajar_integrators::{Integrator, Settings, Window, integrators, mlt::mutations, stop::StopRules};
-use ajar_output::ToneMap;
+use ajar_output::{ToneMap, frame_path};
 use ajar_scene::{Cause, Diagnostic, OutputSettings, RenderSettings};
 
-use super::{frames::numbered, render::Args};
+use super::{frames, render::Args};
 use crate::{
     checkpoint::Saved,
     image::{Aov, Destination, Form},
@@ -167,11 +167,16 @@ fn destination(args: &Args, output: &OutputSettings) -> Result<Destination, Diag
         path: named.or_else(|| output.path.clone()),
         ..output.clone()
     };
-    let (exr, png) = session::output_paths(&args.input.file, &merged);
-    let number = |path: PathBuf| match args.number {
-        Some(frame) => numbered(&path, frame),
-        None => path,
-    };
+    let (mut exr, mut png) = session::output_paths(&args.input.file, &merged);
+    if let (Some(_), Some(frame)) = (&args.frames, args.input.frame()) {
+        if merged.path.is_none() {
+            exr = frames::default_template(&exr);
+            png = exr.with_extension("png");
+        }
+        (exr, png) = (frames::place(&exr, frame)?, frames::place(&png, frame)?);
+    } else if let Some(frame) = args.input.frame() {
+        [exr, png] = [exr, png].map(|path| frame_path(&path, frame).unwrap_or(path));
+    }
     let tone_map = args.tone_map.as_deref().or(output.tone_map.as_deref()).unwrap_or("agx");
     let names = args.aov.clone().or_else(|| output.aov.clone()).unwrap_or_default();
     let form = Form {
@@ -180,5 +185,5 @@ fn destination(args: &Args, output: &OutputSettings) -> Result<Destination, Diag
         aovs: names.iter().map(|name| Aov::parse(name)).collect::<Result<_, _>>()?,
         float: args.float || output.float.unwrap_or(false),
     };
-    Ok(Destination { exr: number(exr), png: number(png), form })
+    Ok(Destination { exr, png, form })
 }

@@ -14,7 +14,7 @@ use super::{
     Exit,
     arguments::{parse_bounds, parse_crop, parse_size},
     checkpoints::Checkpoints,
-    frames::{Frames, parse_frames},
+    frames::{self, Frames, parse_frames},
     input::Input,
     job::Job,
     log::Format,
@@ -34,21 +34,13 @@ use crate::{
 pub(super) struct Args {
     #[command(flatten)]
     pub input: Input,
+    /// Render these frames, one after the other: 1:10x2,15. Their number takes the place of #### or %04d in OUT.exr
+    #[arg(long, value_name = "FRAMES", value_parser = parse_frames, allow_hyphen_values = true,
+          conflicts_with_all = ["frame", "at", "checkpoint", "resume", "shard"])]
+    pub frames: Option<Frames>,
     /// Image to write; a PNG preview goes beside it [default: <name>.exr in the current folder]
     #[arg(short, long, value_name = "OUT.exr")]
     pub output: Option<PathBuf>,
-    /// Render these frames, one image each: 1:10x2,15; the number replaces #### or %04d of the image's name
-    #[arg(
-        long,
-        value_name = "FRAMES",
-        value_parser = parse_frames,
-        allow_hyphen_values = true,
-        conflicts_with_all = ["frame", "at", "checkpoint", "resume", "shard", "stats_json"]
-    )]
-    frames: Option<Frames>,
-    /// The one of them that is rendered.
-    #[arg(skip)]
-    pub number: Option<i64>,
     /// Camera to look through [default: the first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
@@ -126,31 +118,34 @@ impl Args {
 }
 
 pub(super) fn run(args: &Args, log: Format) -> Exit {
-    all(args, log).unwrap_or_else(|diagnostics| {
+    execute(args, log).unwrap_or_else(|diagnostics| {
         log.messages(&diagnostics, args.input.least());
         Exit::after(&diagnostics, args.input.least())
     })
 }
 
-/// Renders one image, or one a frame until one of them is not done.
-fn all(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
+fn execute(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
     if let Some(threads) = args.threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
         pool.map_err(|e| fail(Cause::Resource, format!("cannot start {threads} threads: {e}")))?;
     }
-    let Some(frames) = &args.frames else { return execute(args, log) };
-    for number in frames.numbers() {
-        let input = args.input.at_frame(number);
-        let exit = execute(&Args { input, number: Some(number), ..args.clone() }, log)?;
-        if exit != Exit::Ok {
-            return Ok(exit);
+    let signals = Signals::new().map_err(|e| fail(Cause::System, format!("cannot handle signals: {e}")))?;
+    let Some(Frames(frames)) = &args.frames else { return image(args, log, &signals) };
+    for &frame in frames {
+        let mut one = Args { input: args.input.at_frame(frame), ..args.clone() };
+        if let Some(stats) = &args.stats_json {
+            one.stats_json = Some(frames::place(stats, frame).map_err(|d| vec![d])?);
+        }
+        match image(&one, log, &signals)? {
+            Exit::Ok => {}
+            other => return Ok(other),
         }
     }
     Ok(Exit::Ok)
 }
 
-fn execute(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
-    let signals = Signals::new().map_err(|e| fail(Cause::System, format!("cannot handle signals: {e}")))?;
+/// Renders one image.
+fn image(args: &Args, log: Format, signals: &Signals) -> Result<Exit, Vec<Diagnostic>> {
     let (ready, done) = Ready::new(args, log)?;
     if args.dry_run {
         print(&ready.job.describe());

@@ -1,7 +1,7 @@
 //! Materials at a point: textured parameters into a BSDF, an emission, an opacity.
 
 use ajar_scene as scene;
-use ajar_scene::{AlphaMode, Channel, Input, TextureInput};
+use ajar_scene::{AlphaMode, Channel, Input, NormalMap, TextureInput};
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use crate::{
@@ -34,7 +34,7 @@ impl Material {
         let absorption = absorption(&source);
         let mut material = Self { source, uses_color, constant: None, absorption };
         if !textured {
-            material.constant = Some(material.build(&Textures::default(), &Nowhere));
+            material.constant = Some(material.build(&Textures::default(), &Nowhere, 1.0));
         }
         material
     }
@@ -80,13 +80,19 @@ impl Material {
         self.source.double_sided
     }
 
-    /// Makes `bsdf` how it scatters at `place`.
+    /// Makes `bsdf` how it scatters at `place`; `turn` is −1 where texture coordinates run clockwise, else 1.
     #[inline]
-    pub fn set_bsdf(&self, textures: &Textures, place: &impl Place, bsdf: &mut Bsdf) {
+    pub fn set_bsdf(&self, textures: &Textures, place: &impl Place, turn: f64, bsdf: &mut Bsdf) {
         match &self.constant {
             Some(constant) => bsdf.set(constant),
-            None => *bsdf = self.build(textures, place),
+            None => *bsdf = self.build(textures, place, turn),
         }
+    }
+
+    /// Whether its coat has another normal than the rest.
+    pub fn tilts_coat(&self) -> bool {
+        let m = &self.source;
+        m.coat.value > 0.0 && !m.unlit && (m.normal_map.is_some() || m.coat_normal_map.is_some())
     }
 
     /// Emitted radiance at `place`, of the sides that emit.
@@ -113,10 +119,23 @@ impl Material {
 
     /// Tangent-space shading normal of the normal map at `place`.
     pub fn mapped_normal(&self, textures: &Textures, place: &impl Place) -> Option<DVec3> {
-        let map = self.source.normal_map?;
-        let texel = fetch(TextureInput { texture: map.texture, channel: Channel::R }, textures, place);
-        let n = texel.truncate() * 2.0 - Vec3::ONE;
-        (n * Vec3::new(map.scale, map.scale, 1.0)).as_dvec3().try_normalize()
+        mapped(self.source.normal_map?, textures, place)
+    }
+
+    /// The same of the coat's normal map.
+    pub fn mapped_coat_normal(&self, textures: &Textures, place: &impl Place) -> Option<DVec3> {
+        mapped(self.source.coat_normal_map?, textures, place)
+    }
+
+    /// Angle from the tangent in which highlights are stretched.
+    fn stretch(&self, textures: &Textures, place: &impl Place) -> f64 {
+        let m = &self.source;
+        let direction = m.anisotropy_direction.map_or(0.0, |texture| {
+            let texel = fetch(TextureInput { texture, channel: Channel::R }, textures, place);
+            let direction = texel.truncate().truncate() * 2.0 - Vec2::ONE;
+            f64::from(direction.y.atan2(direction.x))
+        });
+        direction + f64::from(m.anisotropy_rotation)
     }
 
     fn base_color(&self, textures: &Textures, place: &impl Place) -> Rgb {
@@ -124,7 +143,7 @@ impl Material {
         color(&self.source.base_color, textures, place) * vertex
     }
 
-    fn build(&self, textures: &Textures, place: &impl Place) -> Bsdf {
+    fn build(&self, textures: &Textures, place: &impl Place, turn: f64) -> Bsdf {
         let m = &self.source;
         if m.unlit {
             return Bsdf::BLACK;
@@ -137,11 +156,19 @@ impl Material {
             metallic: unit(&m.metallic),
             roughness: unit(&m.roughness),
             anisotropy: unit(&m.anisotropy),
-            anisotropy_rotation: m.anisotropy_rotation.into(),
+            anisotropy_rotation: turn * self.stretch(textures, place),
             specular: unit(&m.specular),
             specular_color: within(color(&m.specular_color, textures, place)),
             ior: m.ior.into(),
+            dispersion: m.dispersion.into(),
             transmission: unit(&m.transmission),
+            diffuse_transmission: unit(&m.diffuse_transmission),
+            diffuse_transmission_color: within(color(&m.diffuse_transmission_color, textures, place)),
+            sheen_color: within(color(&m.sheen_color, textures, place)),
+            sheen_roughness: unit(&m.sheen_roughness),
+            film: unit(&m.film),
+            film_ior: m.film_ior.into(),
+            film_thickness: number(&m.film_thickness, textures, place),
             thin_walled: m.thin_walled,
             coat: unit(&m.coat),
             coat_roughness: unit(&m.coat_roughness),
@@ -158,16 +185,22 @@ fn is_textured(m: &scene::Material) -> bool {
         &m.anisotropy,
         &m.specular,
         &m.transmission,
+        &m.diffuse_transmission,
+        &m.sheen_roughness,
+        &m.film,
+        &m.film_thickness,
         &m.coat,
         &m.coat_roughness,
     ];
-    let colors = [&m.base_color, &m.specular_color];
-    numbers.iter().any(|i| i.texture.is_some()) || colors.iter().any(|i| i.texture.is_some())
+    let colors = [&m.base_color, &m.specular_color, &m.diffuse_transmission_color, &m.sheen_color];
+    m.anisotropy_direction.is_some()
+        || numbers.iter().any(|i| i.texture.is_some())
+        || colors.iter().any(|i| i.texture.is_some())
 }
 
 /// Beer–Lambert coefficient: σ = −ln(colour) / distance (KHR_materials_volume).
 fn absorption(m: &scene::Material) -> Option<Rgb> {
-    let absorbs = m.transmission.value > 0.0
+    let absorbs = m.transmission.value.max(m.diffuse_transmission.value) > 0.0
         && !m.thin_walled
         && m.attenuation_distance.is_finite()
         && m.attenuation_color.min_element() < 1.0;
@@ -175,6 +208,12 @@ fn absorption(m: &scene::Material) -> Option<Rgb> {
         let color = m.attenuation_color.as_dvec3().clamp(Rgb::splat(1e-6), Rgb::ONE);
         -color.ln() / f64::from(m.attenuation_distance).max(1e-9)
     })
+}
+
+fn mapped(map: NormalMap, textures: &Textures, place: &impl Place) -> Option<DVec3> {
+    let texel = fetch(TextureInput { texture: map.texture, channel: Channel::R }, textures, place);
+    let n = texel.truncate() * 2.0 - Vec3::ONE;
+    (n * Vec3::new(map.scale, map.scale, 1.0)).as_dvec3().try_normalize()
 }
 
 /// Raw texel of an input's texture.

@@ -61,7 +61,7 @@ impl Material {
     }
 
     fn textures_mut(&mut self) -> impl Iterator<Item = &mut Id<Texture>> {
-        let inputs: [&mut Option<TextureInput>; 12] = [
+        let inputs: [&mut Option<TextureInput>; 18] = [
             &mut self.base_color.texture,
             &mut self.diffuse_roughness.texture,
             &mut self.metallic.texture,
@@ -70,13 +70,20 @@ impl Material {
             &mut self.specular.texture,
             &mut self.specular_color.texture,
             &mut self.transmission.texture,
+            &mut self.diffuse_transmission.texture,
+            &mut self.diffuse_transmission_color.texture,
+            &mut self.sheen_color.texture,
+            &mut self.sheen_roughness.texture,
+            &mut self.film.texture,
+            &mut self.film_thickness.texture,
             &mut self.coat.texture,
             &mut self.coat_roughness.texture,
             &mut self.emission.texture,
             &mut self.opacity.texture,
         ];
-        let normal = self.normal_map.as_mut().map(|NormalMap { texture, .. }| texture);
-        inputs.into_iter().flatten().map(|input| &mut input.texture).chain(normal)
+        let maps = [&mut self.normal_map, &mut self.coat_normal_map].into_iter().flatten();
+        let others = maps.map(|NormalMap { texture, .. }| texture).chain(&mut self.anisotropy_direction);
+        inputs.into_iter().flatten().map(|input| &mut input.texture).chain(others)
     }
 }
 

@@ -133,13 +133,22 @@ impl Sink {
             roughness,
             anisotropy,
             anisotropy_rotation,
+            anisotropy_direction,
             specular,
             specular_color,
             ior,
+            dispersion,
             transmission,
+            diffuse_transmission,
+            diffuse_transmission_color,
             thin_walled,
             attenuation_color,
             attenuation_distance,
+            sheen_color,
+            sheen_roughness,
+            film,
+            film_ior,
+            film_thickness,
             coat,
             coat_roughness,
             coat_ior,
@@ -149,10 +158,13 @@ impl Sink {
             opacity,
             alpha_mode,
             normal_map,
+            coat_normal_map,
             unlit,
         } = material;
         self.text(name);
-        [base_color, specular_color, emission].into_iter().for_each(|input| self.color(input));
+        [base_color, specular_color, emission, diffuse_transmission_color, sheen_color]
+            .into_iter()
+            .for_each(|input| self.color(input));
         [
             diffuse_roughness,
             metallic,
@@ -160,13 +172,18 @@ impl Sink {
             anisotropy,
             specular,
             transmission,
+            diffuse_transmission,
+            sheen_roughness,
+            film,
+            film_thickness,
             coat,
             coat_roughness,
             opacity,
         ]
         .into_iter()
         .for_each(|input| self.scalar(input));
-        self.f32s([*anisotropy_rotation, *ior, *attenuation_distance, *coat_ior]);
+        self.f32s([*anisotropy_rotation, *ior, *dispersion, *attenuation_distance, *film_ior, *coat_ior]);
+        self.some(*anisotropy_direction, Self::id);
         self.f32s(attenuation_color.to_array());
         [thin_walled, double_sided, cull_back, unlit].into_iter().for_each(|&flag| self.tag(u8::from(flag)));
         match *alpha_mode {
@@ -177,10 +194,12 @@ impl Sink {
             }
             AlphaMode::Blend => self.tag(2),
         }
-        self.some(*normal_map, |sink, NormalMap { texture, scale }| {
-            sink.id(texture);
-            sink.f32s([scale]);
-        });
+        for map in [normal_map, coat_normal_map] {
+            self.some(*map, |sink, NormalMap { texture, scale }| {
+                sink.id(texture);
+                sink.f32s([scale]);
+            });
+        }
     }
 
     fn color(&mut self, Input { value, texture }: &Input<Vec3>) {

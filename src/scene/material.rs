@@ -90,21 +90,40 @@ pub struct Material {
     pub anisotropy: Input<f32>,
     /// Rotation of the stretch, radians counter-clockwise from the tangent.
     pub anisotropy_rotation: f32,
+    /// Texture whose red and green say the direction of the stretch, 2c − 1 along tangent and bitangent, before rotation.
+    pub anisotropy_direction: Option<Id<Texture>>,
     /// Strength of the dielectric reflection, 1 is Fresnel's.
     pub specular: Input<f32>,
     /// Tint of the dielectric reflection at normal incidence.
     pub specular_color: Input<Vec3>,
     /// Index of refraction, ≥ 1.
     pub ior: f32,
+    /// Spread of the index over wavelengths, 20 over the Abbe number (KHR_materials_dispersion); 0: none. Red, green and
+    /// blue have three indices.
+    pub dispersion: f32,
     /// Share of the dielectric's body that transmits instead of scattering diffusely.
     pub transmission: Input<f32>,
     /// A shell without inside: transmission does not refract, nothing is absorbed.
     pub thin_walled: bool,
+    /// Share of the diffuse light that leaves on the other side.
+    pub diffuse_transmission: Input<f32>,
+    /// Its colour.
+    pub diffuse_transmission_color: Input<Vec3>,
     /// Colour that white light has after `attenuation_distance` inside.
     pub attenuation_color: Vec3,
     /// In metres, world space; infinite: no absorption.
     #[serde(with = "crate::serde_finite")]
     pub attenuation_distance: f32,
+    /// Colour of a layer of fibres over everything but the coat (KHR_materials_sheen).
+    pub sheen_color: Input<Vec3>,
+    /// Perceptual roughness of the fibres.
+    pub sheen_roughness: Input<f32>,
+    /// Weight of a thin film on the interface, which makes it iridescent.
+    pub film: Input<f32>,
+    /// Index of refraction of the film, ≥ 1.
+    pub film_ior: f32,
+    /// Thickness of the film, nanometres.
+    pub film_thickness: Input<f32>,
     /// Weight of a clear coat over everything.
     pub coat: Input<f32>,
     /// Perceptual roughness of the coat.
@@ -123,6 +142,8 @@ pub struct Material {
     pub alpha_mode: AlphaMode,
     /// Normal map of everything but the coat.
     pub normal_map: Option<NormalMap>,
+    /// Normal map of the coat, with the tangents of `normal_map`.
+    pub coat_normal_map: Option<NormalMap>,
     /// Shows `base_color` as it is, whatever the light (KHR_materials_unlit); all else but opacity is ignored.
     pub unlit: bool,
 }
@@ -137,13 +158,22 @@ impl Default for Material {
             roughness: Input::constant(0.5),
             anisotropy: Input::constant(0.0),
             anisotropy_rotation: 0.0,
+            anisotropy_direction: None,
             specular: Input::constant(1.0),
             specular_color: Input::constant(Vec3::ONE),
             ior: 1.5,
+            dispersion: 0.0,
             transmission: Input::constant(0.0),
+            diffuse_transmission: Input::constant(0.0),
+            diffuse_transmission_color: Input::constant(Vec3::ONE),
             thin_walled: false,
             attenuation_color: Vec3::ONE,
             attenuation_distance: f32::INFINITY,
+            sheen_color: Input::constant(Vec3::ZERO),
+            sheen_roughness: Input::constant(0.0),
+            film: Input::constant(0.0),
+            film_ior: 1.3,
+            film_thickness: Input::constant(400.0),
             coat: Input::constant(0.0),
             coat_roughness: Input::constant(0.0),
             coat_ior: 1.5,
@@ -153,6 +183,7 @@ impl Default for Material {
             opacity: Input::constant(1.0),
             alpha_mode: AlphaMode::Opaque,
             normal_map: None,
+            coat_normal_map: None,
             unlit: false,
         }
     }

@@ -31,9 +31,17 @@ impl Material {
             specular,
             specular_color,
             ior,
+            dispersion,
             transmission,
+            diffuse_transmission,
+            diffuse_transmission_color,
             attenuation_color,
             attenuation_distance,
+            sheen_color,
+            sheen_roughness,
+            film,
+            film_ior,
+            film_thickness,
             coat,
             coat_roughness,
             coat_ior,
@@ -41,7 +49,9 @@ impl Material {
             opacity,
             alpha_mode,
             normal_map,
+            coat_normal_map,
             name: _,
+            anisotropy_direction: _,
             thin_walled: _,
             double_sided: _,
             cull_back: _,
@@ -51,7 +61,9 @@ impl Material {
         for (name, Vec3 { x, y, z }, range) in [
             ("base_color", &mut base_color.value, Range::Unit),
             ("specular_color", &mut specular_color.value, Range::Unit),
+            ("diffuse_transmission_color", &mut diffuse_transmission_color.value, Range::Unit),
             ("attenuation_color", attenuation_color, Range::Unit),
+            ("sheen_color", &mut sheen_color.value, Range::Unit),
             ("emission", &mut emission.value, Range::AtLeast(0.0)),
         ] {
             [x, y, z].into_iter().for_each(|channel| see(name, channel, range));
@@ -63,6 +75,9 @@ impl Material {
             ("anisotropy", &mut anisotropy.value),
             ("specular", &mut specular.value),
             ("transmission", &mut transmission.value),
+            ("diffuse_transmission", &mut diffuse_transmission.value),
+            ("sheen_roughness", &mut sheen_roughness.value),
+            ("film", &mut film.value),
             ("coat", &mut coat.value),
             ("coat_roughness", &mut coat_roughness.value),
             ("opacity", &mut opacity.value),
@@ -70,6 +85,9 @@ impl Material {
             see(name, value, Range::Unit);
         }
         see("ior", ior, Range::AtLeast(1.0));
+        see("dispersion", dispersion, Range::AtLeast(0.0));
+        see("film_ior", film_ior, Range::AtLeast(1.0));
+        see("film_thickness", &mut film_thickness.value, Range::AtLeast(0.0));
         see("coat_ior", coat_ior, Range::AtLeast(1.0));
         see("anisotropy_rotation", anisotropy_rotation, Range::Any);
         if *attenuation_distance != f32::INFINITY {
@@ -79,8 +97,8 @@ impl Material {
             // A cutoff above 1 is how glTF hides everything.
             see("alpha_mode", cutoff, Range::AtLeast(0.0));
         }
-        if let Some(map) = normal_map {
-            see("normal_map.scale", &mut map.scale, Range::Any);
+        for (name, map) in [("normal_map.scale", normal_map), ("coat_normal_map.scale", coat_normal_map)] {
+            map.iter_mut().for_each(|map| see(name, &mut map.scale, Range::Any));
         }
     }
 }

@@ -130,15 +130,3 @@ fn quiet_is_quiet_and_a_dry_run_writes_nothing() {
     assert_eq!((run.out.as_str(), run.err.as_str()), ("", ""));
     assert!(bench.has("leaf.exr"));
 }
-
-#[test]
-fn each_frame_is_an_image_of_its_own() {
-    let bench = Bench::new();
-    let render = |words: &str| bench.run(&format!("render leaf.gltf --spp 1 --size 4x4 {words}"));
-    render("--frames 1:4x2,-1 -o out.##.exr").exits(0).prints(&["out.01.exr", "out.03.exr", "out.-1.exr"]);
-    assert!(bench.has("out.03.png") && !bench.has("out.02.exr"));
-    render("--frames 2").exits(0);
-    assert!(bench.has("leaf.0002.exr"));
-    render("--frames 5:1").exits(2).says(&["from a number to a smaller one"]);
-    render("--frames 1:2 --frame 3").exits(2);
-}

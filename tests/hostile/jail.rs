@@ -18,6 +18,9 @@ const HANG: Duration = Duration::from_secs(120);
 /// Address space of the program, bytes; the file is given a quarter of it.
 const MEMORY: u64 = 512 << 20;
 
+/// Address space where USD is read: usd-core reserves more than a GiB that it hardly touches, and crashes without.
+const USD_MEMORY: u64 = 2 << 30;
+
 /// Bytes of messages about one file. More would bury what matters.
 const MESSAGES: usize = 64 << 10;
 
@@ -69,17 +72,27 @@ impl Jail {
 
     /// Checks what becomes of a file.
     pub fn try_path(&mut self, path: &Path, fate: Fate) {
-        let (status, messages) = self.validate(path);
+        self.judge(path, fate, limited(MEMORY));
+    }
+
+    /// The same for a USD file, which may refer to others in `folder`.
+    pub fn try_usd(&mut self, path: &Path, folder: &Path, fate: Fate) {
+        let mut command = limited(USD_MEMORY);
+        command.arg("--allow").arg(folder);
+        self.judge(path, fate, command);
+    }
+
+    fn judge(&mut self, path: &Path, fate: Fate, command: Command) {
+        let (status, messages) = self.validate(path, command);
         if let Err(why) = judge(path, status, &messages, fate) {
             let shown: String = messages.chars().take(600).collect();
             self.escapes.push(format!("{}: {why}\n{shown}", path.display()));
         }
     }
 
-    fn validate(&self, path: &Path) -> (Option<ExitStatus>, String) {
+    fn validate(&self, path: &Path, mut command: Command) -> (Option<ExitStatus>, String) {
         let log = self.path("messages.log");
-        let mut command = limited();
-        command.args(["validate", "--memory-limit", &(MEMORY / 4).to_string()]).arg(path);
+        command.args(["--memory-limit", &(MEMORY / 4).to_string()]).arg(path);
         // Every thread reserves address space for itself, so there should not be one for each core.
         command.env("RAYON_NUM_THREADS", "2").env("MALLOC_ARENA_MAX", "2");
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(File::create(&log).unwrap());
@@ -106,17 +119,19 @@ impl Jail {
     }
 }
 
-/// The program below the limits that the system can set.
-fn limited() -> Command {
+/// `ajar validate` below the limits that the system can set, with this much address space.
+fn limited(memory: u64) -> Command {
     let ajar = env!("CARGO_BIN_EXE_ajar");
-    let limits = [format!("--as={MEMORY}"), format!("--cpu={CPU_SECONDS}"), "--core=0".into()];
+    let limits = [format!("--as={memory}"), format!("--cpu={CPU_SECONDS}"), "--core=0".into()];
     let mut probe = Command::new("prlimit");
     if !probe.args(&limits).arg("true").status().is_ok_and(|status| status.success()) {
         println!("skipped: limits on memory and processor time, for lack of prlimit");
-        return Command::new(ajar);
+        let mut command = Command::new(ajar);
+        command.arg("validate");
+        return command;
     }
     let mut command = Command::new("prlimit");
-    command.args(limits).arg(OsString::from(ajar));
+    command.args(limits).arg(OsString::from(ajar)).arg("validate");
     command
 }
 

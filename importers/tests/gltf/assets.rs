@@ -74,8 +74,7 @@ const FACTS: [(&str, [usize; 6]); 57] = [
 ];
 
 /// Files that require what is not supported.
-const REFUSED: [(&str, &str); 2] =
-    [("Box_Draco", "KHR_draco_mesh_compression"), ("magnum_image-basis-embedded", "GOOGLE_texture_basis")];
+const REFUSED: [(&str, &str); 1] = [("magnum_image-basis-embedded", "GOOGLE_texture_basis")];
 
 /// The folder of shared test assets, if there is one on this machine.
 pub fn shared() -> Option<PathBuf> {

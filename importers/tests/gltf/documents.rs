@@ -169,10 +169,10 @@ fn the_memory_limit_holds() {
 #[test]
 fn required_extensions_must_be_supported() {
     let mut asset = Asset::triangle(json!({}));
-    asset.json["extensionsRequired"] = json!(["KHR_mesh_quantization", "KHR_draco_mesh_compression"]);
+    asset.json["extensionsRequired"] = json!(["KHR_mesh_quantization", "KHR_materials_volume_scatter"]);
     let (element, message) = failure(&asset);
     assert_eq!(element, "extensionsRequired[1]");
-    assert_eq!(message, "the file requires KHR_draco_mesh_compression, which is not supported");
+    assert_eq!(message, "the file requires KHR_materials_volume_scatter, which is not supported");
     for feature in importers()[0].features().iter().filter(|feature| feature.name.contains('_')) {
         asset.json["extensionsRequired"] = json!([feature.name]);
         assert!(asset.import().is_ok(), "{}", feature.name);
@@ -181,15 +181,15 @@ fn required_extensions_must_be_supported() {
 
 #[test]
 fn unsupported_extensions_are_named_once_with_what_is_lost() {
-    let mut asset = Asset::with_material(json!({"extensions": {"KHR_materials_sheen": {}}}));
-    asset.push("materials", json!({"extensions": {"KHR_materials_sheen": {}, "ACME_glow": {}}}));
-    asset.json["extensionsUsed"] = json!(["KHR_materials_sheen", "MSFT_lod", "KHR_materials_unlit"]);
+    let mut asset = Asset::with_material(json!({"extensions": {"KHR_materials_coat": {}}}));
+    asset.push("materials", json!({"extensions": {"KHR_materials_coat": {}, "ACME_glow": {}}}));
+    asset.json["extensionsUsed"] = json!(["KHR_materials_coat", "MSFT_lod", "KHR_materials_unlit"]);
     asset.json["extras"] = json!({"extensions": {"NOT_ONE": {}}});
     assert_eq!(
         warnings(&asset.import().unwrap()),
         [
             "materials[1].extensions.ACME_glow: ACME_glow is not supported: what it adds is missing",
-            "materials[0].extensions.KHR_materials_sheen: KHR_materials_sheen is not supported: the sheen is missing",
+            "materials[0].extensions.KHR_materials_coat: KHR_materials_coat is not supported: its coat is missing",
             "extensionsUsed[1]: MSFT_lod is not supported: the first level of detail is shown",
         ]
     );

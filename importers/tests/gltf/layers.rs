@@ -11,12 +11,12 @@ use crate::{
     warnings,
 };
 
-fn extended(extensions: Value) -> Material {
+pub fn extended(extensions: Value) -> Material {
     material(json!({"extensions": extensions})).0
 }
 
 /// The material and the warnings that it causes.
-fn warned(definition: Value) -> (Material, Vec<String>) {
+pub fn warned(definition: Value) -> (Material, Vec<String>) {
     let imported = Asset::with_material(definition).import().unwrap();
     (imported.scene.materials.iter().next().unwrap().clone(), warnings(&imported))
 }
@@ -123,25 +123,9 @@ fn clear_coat() {
     assert_eq!(texture(&imported, &made.coat).1, Channel::R);
     assert_eq!(texture(&imported, &made.coat_roughness).1, Channel::G);
 
-    let coat = json!({"clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0}});
-    let (_, warnings) = warned(json!({"extensions": {"KHR_materials_clearcoat": coat}}));
-    let element = "materials[0].extensions.KHR_materials_clearcoat.clearcoatNormalTexture";
-    assert_eq!(warnings, [format!("{element}: normal maps of coats are dropped")]);
-}
-
-#[test]
-fn anisotropy() {
-    let found = json!({"anisotropyStrength": 0.5, "anisotropyRotation": 1.25});
-    let made = extended(json!({"KHR_materials_anisotropy": found}));
-    assert_eq!((made.anisotropy, made.anisotropy_rotation), (Input::constant(0.5), 1.25));
-    let found = json!({"anisotropyStrength": 0.5, "anisotropyTexture": {"index": 0}});
-    let (made, warnings) = warned(json!({"extensions": {"KHR_materials_anisotropy": found}}));
-    assert_eq!(made.anisotropy.texture.unwrap().channel, Channel::B);
-    let element = "materials[0].extensions.KHR_materials_anisotropy.anisotropyTexture";
-    assert_eq!(
-        warnings,
-        [format!("{element}: the directions of the anisotropy texture are dropped, its strength is used")]
-    );
+    let coat = json!({"clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0, "scale": 0.5}});
+    let (made, warnings) = warned(json!({"extensions": {"KHR_materials_clearcoat": coat}}));
+    assert_eq!((made.coat_normal_map.unwrap().scale, made.normal_map, warnings.len()), (0.5, None, 0));
 }
 
 #[test]

@@ -12,6 +12,8 @@ mod build;
 mod compressed;
 mod deform;
 mod documents;
+mod draco;
+mod effects;
 mod geometry;
 mod hostile;
 mod layers;

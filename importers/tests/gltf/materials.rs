@@ -235,7 +235,7 @@ fn images_that_cannot_be_had_drop_their_textures_once() {
             "images[0]: textures of this image are dropped: the data URI is",
         ),
         (json!({}), "images[0]: textures of this image are dropped: it has neither"),
-        (json!({"uri": data_uri(b"\xabKTX 20\xbb")}), "images[0]: textures of this image are dropped: KTX2"),
+        (json!({"uri": data_uri(b"\xabKTX 11\xbb")}), "images[0]: textures of this image are dropped: KTX 1"),
     ];
     for (image, expected) in cases {
         let mut asset = Asset::with_material(definition.clone());

@@ -130,10 +130,20 @@ fn encodings_and_line_ends() {
     for text in [triangle.to_owned(), triangle.replace("\r\n", "\r"), format!("\u{feff}{triangle}")] {
         assert_eq!(meshes(&geometry(&text))[0].positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
     }
-    let wide: Vec<u8> = triangle.encode_utf16().flat_map(u16::to_le_bytes).collect();
-    assert!(import(&[("main.obj", &wide)]).unwrap_err().message.contains("UTF-16"));
-    let latin = import(&[("main.obj", b"# caf\xe9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")]).unwrap();
-    assert_eq!(warnings(&latin), ["is not UTF-8; names may not be found"]);
+    let marked = format!("\u{feff}{triangle}");
+    for to_bytes in [u16::to_le_bytes, u16::to_be_bytes] {
+        let mut wide: Vec<u8> = marked.encode_utf16().flat_map(to_bytes).collect();
+        let imported = import(&[("main.obj", &wide)]).unwrap();
+        assert_eq!(meshes(&imported)[0].positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+        wide.extend(to_bytes(0xd800));
+        let error = import(&[("main.obj", &wide)]).unwrap_err();
+        assert!(error.message.contains("broken UTF-16"), "{error}");
+    }
+    // Names meet in whatever encoding both files share.
+    let latin = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl caf\xe9\nf 1 2 3\n";
+    let latin = import(&[("main.obj", latin), ("a.mtl", b"newmtl caf\xe9\nKd 1 0 0\n")]).unwrap();
+    assert_eq!(latin.scene.materials.iter().next().unwrap().name, "caf\u{e9}");
+    assert!(warnings(&latin).is_empty() && latin.diagnostics.iter().any(|d| d.message.contains("Latin-1")));
 }
 
 #[test]

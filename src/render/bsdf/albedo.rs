@@ -8,10 +8,10 @@ use std::{f64::consts::PI, sync::OnceLock};
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::{fresnel, ggx::Ggx};
+use super::{fresnel, ggx::Ggx, stretched::Stretched};
 
 /// Nodes along √cosθ and along √α.
-const NODES: usize = 32;
+pub const NODES: usize = 32;
 /// Indices this close to 1 do not bend light.
 const MATCHED: f64 = 1e-3;
 
@@ -40,49 +40,35 @@ impl Albedo {
         }
     }
 
-    fn from_table(v: DVec4) -> Self {
+    /// From a row of numbers in the order of the fields.
+    pub fn from_table(v: DVec4) -> Self {
         Self { total: v.x, reflected: v.y, edge: v.z, transmitted: v.w }
     }
 
-    fn to_table(self) -> DVec4 {
+    /// As [`Self::from_table`] takes it.
+    pub fn to_table(self) -> DVec4 {
         DVec4::new(self.total, self.reflected, self.edge, self.transmitted)
     }
 }
 
 /// A width α located between two rows of the tables.
 #[derive(Clone, Copy, Debug)]
-struct Row {
+pub struct Row {
     index: u16,
     fraction: f32,
 }
 
 impl Row {
-    fn new(alpha: f64) -> Self {
-        let (index, fraction) = locate(alpha);
-        Self { index: index as u16, fraction: fraction as f32 }
-    }
-}
-
-/// The widths of a distribution located in the tables.
-#[derive(Clone, Copy, Debug)]
-pub struct Widths {
-    narrow: Row,
-    wide: Row,
-    /// Square of the ratio of the widths.
-    aspect: f32,
-}
-
-impl Widths {
-    /// Those of `ggx`.
+    /// That of an isotropic `ggx`.
     pub fn new(ggx: &Ggx) -> Self {
-        let aspect = if ggx.is_smooth() { 1.0 } else { ggx.narrow() / ggx.wide() };
-        Self { narrow: Row::new(ggx.narrow()), wide: Row::new(ggx.wide()), aspect: (aspect * aspect) as f32 }
+        let (index, fraction) = locate(ggx.narrow());
+        Self { index: index as u16, fraction: fraction as f32 }
     }
 }
 
 /// The interval between nodes that holds `x` and where in it, linearly. Nodes are spaced like squares, to crowd towards 0,
 /// where albedos change fast.
-fn locate(x: f64) -> (usize, f64) {
+pub fn locate(x: f64) -> (usize, f64) {
     const LAST: f64 = (NODES - 1) as f64;
     let x = x.clamp(0.0, 1.0) * (LAST * LAST);
     let index = (x.sqrt() as usize).min(NODES - 2);
@@ -90,7 +76,8 @@ fn locate(x: f64) -> (usize, f64) {
     (index, (x - i * i) / (2.0 * i + 1.0))
 }
 
-fn node(i: usize) -> f64 {
+/// Where node `i` is.
+pub fn node(i: usize) -> f64 {
     (i as f64 / (NODES - 1) as f64).powi(2)
 }
 
@@ -109,6 +96,8 @@ pub struct Interface {
     /// Made only for what transmits.
     inside: OnceLock<Table>,
     fresnel_average: f64,
+    /// Of anisotropic surfaces, from the front and from inside.
+    stretched: [OnceLock<Box<Stretched>>; 2],
 }
 
 /// A list that only grows, so that readers need no lock.
@@ -150,20 +139,26 @@ impl Interface {
         if self.ior == 1.0 { 0.0 } else { fresnel::dielectric(cos.clamp(0.0, 1.0), self.eta(inside)) }
     }
 
-    /// Albedos at cosine `cos` on the front or on the inside.
-    pub fn albedo(&self, inside: bool, widths: Widths, cos: f64) -> Albedo {
+    /// Albedos at cosine `cos` of an isotropic surface of width `row`, on the front or on the inside.
+    pub fn albedo(&self, inside: bool, row: Row, cos: f64) -> Albedo {
         let (column, x) = locate(cos);
         let rows = &self.table(inside).rows;
         let at = |row: &[[f32; 4]; NODES]| {
             let [near, far] = [row[column], row[column + 1]].map(|v| DVec4::from_array(v.map(f64::from)));
             near * (1.0 - x) + far * x
         };
-        blend(widths, cos, |i| at(&rows[i]))
+        blend(row, |i| at(&rows[i]))
     }
 
     /// Cosine-weighted averages over the hemisphere.
-    pub fn average(&self, inside: bool, widths: Widths) -> Albedo {
-        blend(widths, 1.0, |i| self.table(inside).averages[i])
+    pub fn average(&self, inside: bool, row: Row) -> Albedo {
+        blend(row, |i| self.table(inside).averages[i])
+    }
+
+    /// Tables of anisotropic surfaces.
+    pub fn stretched(&self, inside: bool) -> &Stretched {
+        self.stretched[usize::from(inside)]
+            .get_or_init(|| Box::new(Stretched::integrate(if inside { 1.0 / self.ior } else { self.ior })))
     }
 
     /// Cosine-weighted average of [`Self::fresnel`] on the front.
@@ -177,7 +172,8 @@ impl Interface {
 
     fn integrate(ior: f64) -> Self {
         let fresnel_average = if ior == 1.0 { 0.0 } else { mean(256, |cos| fresnel::dielectric(cos, ior)) };
-        Self { ior, front: Table::integrate(ior), inside: OnceLock::new(), fresnel_average }
+        let (front, inside, stretched) = (Table::integrate(ior), OnceLock::new(), Default::default());
+        Self { ior, front, inside, fresnel_average, stretched }
     }
 }
 
@@ -191,31 +187,10 @@ impl Table {
     }
 }
 
-/// Interpolates `row` between the rows of the tables.
-fn blend(widths: Widths, cos: f64, row: impl Fn(usize) -> DVec4) -> Albedo {
-    let at = |place: Row| {
-        let (i, y) = (usize::from(place.index), f64::from(place.fraction));
-        row(i) * (1.0 - y) + row(i + 1) * y
-    };
-    if widths.aspect == 1.0 {
-        return Albedo::from_table(at(widths.narrow));
-    }
-    let (narrow, wide) = (Albedo::from_table(at(widths.narrow)), Albedo::from_table(at(widths.wide)));
-    anisotropic(narrow, wide, f64::from(widths.aspect), cos)
-}
-
-/// Tables are of isotropic surfaces. Anisotropic ones lose less along their wide axis at grazing angles and are given
-/// only that part of the loss back which integration has shown to be lost in every azimuth.
-fn anisotropic(narrow: Albedo, wide: Albedo, aspect: f64, cos: f64) -> Albedo {
-    let certain = aspect + (1.0 - aspect) * 0.4 * (cos / 0.3).min(1.0);
-    let mean = 0.5 * (narrow.total + wide.total);
-    let total = 1.0 - certain * (1.0 - mean);
-    let scale = total / mean.max(1e-6);
-    let reflected = (narrow.reflected.max(wide.reflected) * scale).min(total);
-    let edge = narrow.edge.max(wide.edge) * scale;
-    let transmitted = 0.5 * (narrow.transmitted + wide.transmitted);
-    let lost = (1.0 - reflected - transmitted).max(0.0);
-    Albedo { total, reflected, edge, transmitted: transmitted + (1.0 - aspect) * lost }
+/// Interpolates between the rows of the tables.
+fn blend(place: Row, row: impl Fn(usize) -> DVec4) -> Albedo {
+    let (i, y) = (usize::from(place.index), f64::from(place.fraction));
+    Albedo::from_table(row(i) * (1.0 - y) + row(i + 1) * y)
 }
 
 /// Cosine-weighted average over the hemisphere of a function of the cosine, from `n` samples of it.
@@ -249,22 +224,24 @@ fn integrate_row(alpha: f64, eta: f64) -> [[f32; 4]; NODES] {
         let albedo = if alpha == 0.0 {
             Albedo::smooth(node(i), eta)
         } else {
-            integrate_direction(&Ggx::isotropic(alpha), node(i).max(1e-5), eta)
+            let cos = node(i).max(1e-5);
+            let w = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+            // Half of the disc is enough by symmetry. Total reflection cuts sharply through what is seen from inside.
+            let (radii, azimuths) = if eta < 1.0 { (32, 24) } else { (16, 10) };
+            integrate_direction(&Ggx::isotropic(alpha), w, eta, radii, PI / f64::from(azimuths), azimuths)
         };
         albedo.to_table().to_array().map(|v| v as f32)
     })
 }
 
-/// Importance sampling of the visible normals by a fixed lattice in polar coordinates on the disc they are drawn from: the
-/// points crowd towards the rim, where facets are steep and light is lost; half of the disc is enough by symmetry.
-fn integrate_direction(ggx: &Ggx, cos: f64, eta: f64) -> Albedo {
+/// Importance sampling of the visible normals by a fixed lattice in polar coordinates on the disc they are drawn from:
+/// `azimuths` axes at distances of `step`, and points that crowd towards the rim, where facets are steep and light is
+/// lost.
+pub fn integrate_direction(ggx: &Ggx, w: DVec3, eta: f64, radii: u32, step: f64, azimuths: u32) -> Albedo {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    // Total reflection cuts sharply through what is seen from inside.
-    let (radii, azimuths) = if eta < 1.0 { (32, 24) } else { (16, 10) };
-    let w = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
     let (mut sum, mut whole) = (DVec4::ZERO, 0.0);
     for j in 0..azimuths {
-        let axis = DVec2::from_angle(PI * (f64::from(j) + 0.5) / f64::from(azimuths));
+        let axis = DVec2::from_angle(step * (f64::from(j) + 0.5));
         for i in 0..radii {
             // 1 − r² = t³, whose element is in proportion to t² dt.
             let t = (f64::from(i) + (f64::from(j) * GOLDEN + 0.5).fract()) / f64::from(radii);

@@ -1,7 +1,7 @@
 //! The anisotropic GGX distribution of microfacet normals: Walter et al. 2007, "Microfacet Models for Refraction";
 //! height-correlated Smith shadowing, Heitz 2014; visible normals by spherical caps, Dupuy and Benyoub 2023.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec2};
 
 use crate::warp::{cone_to_square, disc_to_cone, square_to_disc};
 
@@ -11,8 +11,8 @@ pub const SMOOTH: f64 = 1e-3;
 /// A distribution of microfacet normals. Directions and normals have z > 0 everywhere in this module.
 #[derive(Clone, Copy, Debug)]
 pub struct Ggx {
-    /// α along the two axes of the distribution; zero for a smooth surface.
-    alpha: DVec2,
+    /// α along the two axes of the distribution, the wider first; zero for a smooth surface.
+    alpha: Vec2,
     /// Cosine and sine of the first axis' angle from the tangent.
     axis: DVec2,
 }
@@ -24,13 +24,24 @@ impl Ggx {
         let alpha = roughness * roughness;
         let along = alpha + (1.0 - alpha) * anisotropy * anisotropy;
         let alpha = if along < SMOOTH { DVec2::ZERO } else { DVec2::new(along, alpha.max(SMOOTH)) };
+        let alpha = alpha.as_vec2();
         let axis = if alpha.x == alpha.y { DVec2::X } else { DVec2::from_angle(rotation) };
         Self { alpha, axis }
     }
 
+    /// Of widths `wide` along the tangent and `narrow` across it.
+    pub fn along_tangent(wide: f64, narrow: f64) -> Self {
+        Self { alpha: DVec2::new(wide, narrow).as_vec2(), axis: DVec2::X }
+    }
+
     /// Of equal width in all directions.
     pub fn isotropic(alpha: f64) -> Self {
-        Self { alpha: DVec2::splat(alpha), axis: DVec2::X }
+        Self { alpha: Vec2::splat(alpha as f32), axis: DVec2::X }
+    }
+
+    /// Whether it is the same in all directions.
+    pub fn is_isotropic(&self) -> bool {
+        self.alpha.x == self.alpha.y
     }
 
     /// Whether all normals are the surface's.
@@ -40,19 +51,20 @@ impl Ggx {
 
     /// The smaller width.
     pub fn narrow(&self) -> f64 {
-        self.alpha.min_element()
+        self.alpha.min_element().into()
     }
 
     /// The larger width.
     pub fn wide(&self) -> f64 {
-        self.alpha.max_element()
+        self.alpha.max_element().into()
     }
 
     /// Density D of normals per projected steradian.
     pub fn density(&self, h: DVec3) -> f64 {
-        let slope = self.along_axes(h) / self.alpha;
+        let alpha = self.alpha.as_dvec2();
+        let slope = self.along_axes(h) / alpha;
         let k = slope.length_squared() + h.z * h.z;
-        1.0 / (std::f64::consts::PI * self.alpha.x * self.alpha.y * k * k)
+        1.0 / (std::f64::consts::PI * alpha.x * alpha.y * k * k)
     }
 
     /// G₂ / (4 cos cos): shadowing and masking with the cosines of the reflection formula.
@@ -67,7 +79,17 @@ impl Ggx {
 
     /// √(α²x² + α²y² + z²).
     fn stretched(&self, w: DVec3) -> f64 {
-        ((self.along_axes(w) * self.alpha).length_squared() + w.z * w.z).sqrt()
+        ((self.along_axes(w) * self.alpha.as_dvec2()).length_squared() + w.z * w.z).sqrt()
+    }
+
+    /// The direction that the stretched, isotropic configuration sees as `w` (Heitz 2014, section 5.3).
+    pub fn stretch(&self, w: DVec3) -> DVec3 {
+        (self.along_axes(w) * self.alpha.as_dvec2()).extend(w.z).normalize()
+    }
+
+    /// What [`Self::stretch`] makes of `w` undone, for axes that are the tangents.
+    pub fn unstretch(&self, w: DVec3) -> DVec3 {
+        (w.truncate() / self.alpha.as_dvec2()).extend(w.z).normalize()
     }
 
     /// A normal with density `visible(w) (w·h) D(h)` per steradian.
@@ -77,16 +99,16 @@ impl Ggx {
 
     /// The second half of [`Self::sample`]: from a point of the unit disc.
     pub fn visible_normal(&self, w: DVec3, p: DVec2) -> Option<DVec3> {
-        let w = (self.along_axes(w) * self.alpha).extend(w.z).normalize();
+        let w = self.stretch(w);
         let h = disc_to_cone(p, -w.z) + w;
-        let h = self.off_axes(h.truncate() * self.alpha).extend(h.z.max(0.0));
+        let h = self.off_axes(h.truncate() * self.alpha.as_dvec2()).extend(h.z.max(0.0));
         h.try_normalize().filter(|h| h.z > 0.0)
     }
 
     /// The `u` with which [`Self::sample`] gives `h`.
     pub fn invert(&self, w: DVec3, h: DVec3) -> Option<[f64; 2]> {
-        let w = (self.along_axes(w) * self.alpha).extend(w.z).normalize();
-        let h = (self.along_axes(h) / self.alpha).extend(h.z).try_normalize()?;
+        let w = self.stretch(w);
+        let h = (self.along_axes(h) / self.alpha.as_dvec2()).extend(h.z).try_normalize()?;
         let cap = h * (2.0 * h.dot(w)) - w;
         cone_to_square(cap.normalize(), -w.z)
     }

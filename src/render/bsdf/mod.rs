@@ -5,23 +5,32 @@
 //! light's side of a path and `w_e` to the one on the eye's. Geometric normals are the caller's business.
 //!
 //! The surface is a principled one: a metal, an opaque dielectric (GGX over a diffuse body) and a transmitting dielectric,
-//! mixed linearly, under a clear coat ([`layered`]). Opaque surfaces look alike from both sides. A transmitting solid has
+//! mixed linearly, under sheen and a clear coat ([`layered`]). Opaque surfaces look alike from both sides. A transmitting solid has
 //! index 1 in front (z > 0) and its own inside. A thin-walled one does not bend light.
 //!
-//! Five lobes ([`lobe`]) are chosen by the albedos that the known direction gives. Smooth lobes have densities and exact
+//! Where the index depends on the wavelength there are three, for red, green and blue, and light that is transmitted by a
+//! smooth surface is of one channel from then on: which one is part of how the vertex scatters, its [`Mode`]. Through
+//! two surfaces, only paths that choose the same twice carry light.
+//!
+//! Seven lobes ([`lobe`]) are chosen by the albedos that the known direction gives. Smooth lobes have densities and exact
 //! inverses; a perfectly smooth interface makes its lobe a Dirac event, which [`Bsdf::eval`] and [`Bsdf::pdf`] never see.
-//! All densities are per steradian and, in this model, the same for both [`Side`]s.
+//! All densities are per steradian and, in this model, the same for both [`Side`]s. Values are reciprocal, but for tilted
+//! coats and for diffuse transmission of solids that also transmit clearly.
 
 mod albedo;
 mod coat;
 mod compensation;
 mod diffuse;
+mod film;
 mod fresnel;
 mod ggx;
 mod layered;
 mod parameters;
+mod reflection;
 mod sampling;
 mod scattering;
+mod sheen;
+mod stretched;
 #[cfg(test)]
 mod tests;
 
@@ -63,26 +72,36 @@ pub enum Mode {
     Smooth,
     /// By perfect reflection.
     DeltaReflect,
-    /// By perfect transmission.
+    /// By perfect transmission; where the index depends on the wavelength, of green light.
     DeltaTransmit,
+    /// The same of red light.
+    DeltaTransmitRed,
+    /// The same of blue light.
+    DeltaTransmitBlue,
 }
 
 /// Names of the lobes, as [`Bsdf::sample_lobe`] numbers them.
 pub mod lobe {
-    /// Cosine lobe on the side of the known direction: diffuse and multiply scattered reflection.
+    /// Cosine lobe on the side of the known direction: diffuse and multiply scattered reflection, sheen.
     pub const DIFFUSE: usize = 0;
     /// GGX reflection of metal and dielectric.
     pub const SPECULAR: usize = 1;
-    /// GGX transmission.
+    /// GGX transmission; where the index depends on the wavelength, of green light.
     pub const TRANSMISSION: usize = 2;
     /// GGX reflection of the coat.
     pub const COAT: usize = 3;
-    /// Cosine lobe on the other side: multiply scattered transmission.
+    /// Cosine lobe on the other side: diffuse and multiply scattered transmission.
     pub const DIFFUSE_TRANSMISSION: usize = 4;
+    /// GGX transmission of red light.
+    pub const TRANSMISSION_RED: usize = 5;
+    /// GGX transmission of blue light.
+    pub const TRANSMISSION_BLUE: usize = 6;
+    /// Transmission by channel.
+    pub(super) const BANDS: [usize; 3] = [TRANSMISSION_RED, TRANSMISSION, TRANSMISSION_BLUE];
 }
 
 /// Number of lobes.
-pub const LOBES: usize = 5;
+pub const LOBES: usize = 7;
 
 /// Cosines below this scatter nothing.
 const GRAZING: f64 = 1e-9;
@@ -159,6 +178,13 @@ impl Bsdf {
         }
     }
 
+    /// Gives its coat, if it has one, the unit normal `n` of its own.
+    pub fn tilt_coat(&mut self, n: DVec3) {
+        if let Kind::Layered(layered) = &mut self.kind {
+            layered.tilt_coat(n);
+        }
+    }
+
     /// Radiance BSDF of light that flows from `w_l` to `w_e`, per steradian and without cosine, smooth lobes only;
     /// transmission into another medium includes (η_e/η_l)².
     #[inline]
@@ -207,7 +233,7 @@ impl Bsdf {
     /// Probabilities of choosing each lobe given `known`; they sum to 1, or to 0 if nothing is scattered.
     pub fn lobe_weights(&self, _side: Side, known: DVec3) -> [f64; LOBES] {
         match &self.kind {
-            Kind::Lambert(_) if known.z.abs() >= GRAZING => [1.0, 0.0, 0.0, 0.0, 0.0],
+            Kind::Lambert(_) if known.z.abs() >= GRAZING => [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             Kind::Black | Kind::Lambert(_) => [0.0; LOBES],
             Kind::Layered(layered) => layered.lobe_weights(known),
         }

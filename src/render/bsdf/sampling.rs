@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::{
-    BsdfSample, DeltaEvent, GRAZING, Mode, Side, fresnel::refract, ggx::Ggx, layered::Layered, lobe, mirror,
+    BsdfSample, DeltaEvent, GRAZING, Mode, Side, albedo::Interface, coat::Coat, fresnel::refract, ggx::Ggx,
+    layered::Layered, lobe, mirror,
 };
 use crate::{
     math::Rgb,
@@ -41,9 +42,11 @@ impl Layered {
         let (direction, mode) = match lobe {
             lobe::DIFFUSE => (square_to_cosine_hemisphere(u), Mode::Smooth),
             lobe::SPECULAR => sample_reflection(&self.ggx, w, u)?,
-            lobe::COAT if !(back && self.is_solid()) => sample_reflection(&self.coat?.ggx(), w, u)?,
-            lobe::TRANSMISSION if self.transmitting > 0.0 => self.sample_transmission(w, back, u)?,
-            lobe::DIFFUSE_TRANSMISSION if self.transmitting > 0.0 => {
+            lobe::COAT if !(back && self.is_solid()) => self.coat?.sample(w, u)?,
+            lobe::TRANSMISSION | lobe::TRANSMISSION_RED | lobe::TRANSMISSION_BLUE => {
+                self.sample_transmission(w, back, lobe, u)?
+            }
+            lobe::DIFFUSE_TRANSMISSION if self.has_other_side() => {
                 (mirror(square_to_cosine_hemisphere(u)), Mode::Smooth)
             }
             _ => return None,
@@ -55,22 +58,35 @@ impl Layered {
         Some(BsdfSample { direction, lobe: lobe as u8, mode })
     }
 
-    fn sample_transmission(&self, w: DVec3, inside: bool, u: [f64; 2]) -> Option<(DVec3, Mode)> {
+    fn sample_transmission(&self, w: DVec3, inside: bool, lobe: usize, u: [f64; 2]) -> Option<(DVec3, Mode)> {
+        let band = self.band(lobe)?;
         if self.transmits_dirac() {
-            return Some((self.transmit(w, inside)?, Mode::DeltaTransmit));
+            let mode = match lobe {
+                lobe::TRANSMISSION_RED => Mode::DeltaTransmitRed,
+                lobe::TRANSMISSION_BLUE => Mode::DeltaTransmitBlue,
+                _ => Mode::DeltaTransmit,
+            };
+            return Some((self.transmit(w, inside, band)?, mode));
         }
         let h = self.ggx.sample(w, u)?;
-        let new = if self.thin { mirror(reflect(w, h)) } else { refract(w, h, self.interface.eta(inside))? };
+        let new = if self.thin { mirror(reflect(w, h)) } else { refract(w, h, band.eta(inside))? };
         (new.z < 0.0).then_some((new, Mode::Smooth))
     }
 
-    /// Where `w` with z > 0 goes through the smooth surface.
-    fn transmit(&self, w: DVec3, inside: bool) -> Option<DVec3> {
-        if self.thin || self.interface.ior() == 1.0 {
-            Some(-w)
-        } else {
-            refract(w, DVec3::Z, self.interface.eta(inside))
+    /// The interface at which `lobe` transmits, if it does.
+    fn band(&self, lobe: usize) -> Option<&'static Interface> {
+        match (lobe, self.dispersed) {
+            _ if self.transmitting == 0.0 => None,
+            (lobe::TRANSMISSION, _) => Some(self.interface),
+            (lobe::TRANSMISSION_RED, Some([red, _])) => Some(red),
+            (lobe::TRANSMISSION_BLUE, Some([_, blue])) => Some(blue),
+            _ => None,
         }
+    }
+
+    /// Where `w` with z > 0 goes through the smooth surface.
+    fn transmit(&self, w: DVec3, inside: bool, band: &Interface) -> Option<DVec3> {
+        if self.thin || band.ior() == 1.0 { Some(-w) } else { refract(w, DVec3::Z, band.eta(inside)) }
     }
 
     /// As [`super::Bsdf::invert`].
@@ -81,15 +97,17 @@ impl Layered {
         match lobe {
             lobe::DIFFUSE if same_side => Some(cosine_hemisphere_to_square(new)),
             lobe::DIFFUSE_TRANSMISSION if !same_side => Some(cosine_hemisphere_to_square(new)),
-            lobe::SPECULAR if same_side && !self.ggx.is_smooth() => self.ggx.invert(pair.a, pair.half),
-            lobe::COAT if same_side && !(back && self.is_solid()) => {
-                let coat = self.coat.filter(|c| !c.is_smooth())?;
-                coat.ggx().invert(pair.a, pair.half)
+            lobe::SPECULAR if same_side && !self.ggx.is_smooth() => {
+                self.ggx.invert(pair.a, pair.facet(lobe).half)
             }
-            lobe::TRANSMISSION if !same_side && !self.transmits_dirac() && pair.is_connected() => {
+            lobe::COAT if same_side && !(back && self.is_solid()) => {
+                self.coat?.invert(pair.a, pair.facet(lobe).half)
+            }
+            lobe if !same_side && !self.transmits_dirac() && self.band(lobe).is_some() => {
+                let facet = pair.facet(lobe);
                 // A normal that points to the inside, seen in the mirrored frame.
-                let half = if back && !self.thin { -mirror(pair.half) } else { pair.half };
-                self.ggx.invert(pair.a, half)
+                let half = if back && !self.thin { -mirror(facet.half) } else { facet.half };
+                if facet.is_connected() { self.ggx.invert(pair.a, half) } else { None }
             }
             _ => None,
         }
@@ -103,12 +121,14 @@ impl Layered {
         match mode {
             Mode::Smooth => None,
             Mode::DeltaReflect => self.mirror_event(known),
-            Mode::DeltaTransmit => self.transmit_event(side, known),
+            Mode::DeltaTransmit => self.transmit_event(side, known, lobe::TRANSMISSION),
+            Mode::DeltaTransmitRed => self.transmit_event(side, known, lobe::TRANSMISSION_RED),
+            Mode::DeltaTransmitBlue => self.transmit_event(side, known, lobe::TRANSMISSION_BLUE),
         }
     }
 
     fn mirror_event(&self, known: DVec3) -> Option<DeltaEvent> {
-        let view = self.view(known.z);
+        let view = self.view(known);
         let weights = self.weights(&view);
         let (mut reflectance, mut probability) = (Rgb::ZERO, 0.0);
         if self.ggx.is_smooth() {
@@ -123,27 +143,56 @@ impl Layered {
         (probability > 0.0).then_some(DeltaEvent { direction, reflectance, probability, eta_scale: 1.0 })
     }
 
-    fn transmit_event(&self, side: Side, known: DVec3) -> Option<DeltaEvent> {
-        if !self.transmits_dirac() {
-            return None;
-        }
+    fn transmit_event(&self, side: Side, known: DVec3, lobe: usize) -> Option<DeltaEvent> {
+        let band = self.band(lobe).filter(|_| self.transmits_dirac())?;
         let back = known.z < 0.0;
         let up = if back { mirror(known) } else { known };
-        let direction = self.transmit(up, back && !self.thin)?;
+        let direction = self.transmit(up, back && !self.thin, band)?;
         let direction = if back { mirror(direction) } else { direction };
         if direction.z.abs() < GRAZING {
             return None;
         }
-        let view = self.view(known.z);
+        let view = self.view(known);
         let outside = if back { direction.z } else { known.z };
-        let passed = view.passed.min(self.view(direction.z).passed);
+        let passed = view.passed.min(self.view(direction).passed);
         // From the front in either case, so that both sides compute the same number.
-        let through = 1.0 - self.interface.fresnel(outside.abs(), false);
-        let reflectance = self.base * (self.transmitting * passed * through);
-        let probability = self.weights(&view)[lobe::TRANSMISSION];
-        let ior = if self.thin { 1.0 } else { self.interface.eta(back) };
+        let through = Rgb::ONE - self.boundary(outside.abs(), false);
+        // Of light that is split by wavelength, an event is that of one channel.
+        let channel = match (self.dispersed, lobe) {
+            (None, _) => Rgb::ONE,
+            (_, lobe::TRANSMISSION_RED) => Rgb::X,
+            (_, lobe::TRANSMISSION_BLUE) => Rgb::Z,
+            _ => Rgb::Y,
+        };
+        let reflectance = self.base * through * channel * (self.transmitting * passed);
+        let probability = self.weights(&view)[lobe];
+        let ior = if self.thin { 1.0 } else { band.eta(back) };
         let eta_scale = if side == Side::TowardLight { ior * ior } else { 1.0 };
         (probability > 0.0).then_some(DeltaEvent { direction, reflectance, probability, eta_scale })
+    }
+}
+
+impl Coat {
+    /// Samples its microfacets from `w` with z > 0.
+    fn sample(&self, w: DVec3, u: [f64; 2]) -> Option<(DVec3, Mode)> {
+        let Some(frame) = self.frame() else { return sample_reflection(&self.ggx(), w, u) };
+        let local = frame.to_local(w);
+        if local.z <= 0.0 {
+            return None;
+        }
+        let (new, mode) = sample_reflection(&self.ggx(), local, u)?;
+        let new = frame.to_world(new);
+        (new.z > 0.0).then_some((new, mode))
+    }
+
+    /// The `u` with which [`Self::sample`] gives the direction whose half vector with `w` is `half`.
+    fn invert(&self, w: DVec3, half: DVec3) -> Option<[f64; 2]> {
+        if self.is_smooth() {
+            return None;
+        }
+        let Some(frame) = self.frame() else { return self.ggx().invert(w, half) };
+        let (w, half) = (frame.to_local(w), frame.to_local(half));
+        if w.z > 0.0 && half.z > 0.0 { self.ggx().invert(w, half) } else { None }
     }
 }
 

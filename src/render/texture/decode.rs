@@ -12,7 +12,7 @@ use std::{
 use ajar_scene::{Cause, Diagnostic, Image, ImageSource};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::{Bitmap, Texels, exr};
+use super::{Bitmap, Texels, exr, ktx2};
 
 /// Largest width and height.
 pub(super) const MAX_SIZE: usize = 16384;
@@ -58,8 +58,11 @@ pub fn decode(image: &Image, memory_limit: u64) -> Result<Decoded, Diagnostic> {
     }
     let mut bitmap = guarded(image, || {
         let mut input = open(&image.source)?;
-        if exr::is_exr(input.fill_buf().map_err(|e| e.to_string())?) {
+        let head = input.fill_buf().map_err(|e| e.to_string())?;
+        if exr::is_exr(head) {
             exr::load(input)
+        } else if ktx2::is_ktx2(head) {
+            ktx2::load(input)
         } else {
             read(input, memory_limit)
         }
@@ -72,8 +75,11 @@ pub fn decode(image: &Image, memory_limit: u64) -> Result<Decoded, Diagnostic> {
 pub(super) fn probe(image: &Image) -> Result<Header, Diagnostic> {
     let header = guarded(image, || {
         let mut input = open(&image.source)?;
-        if exr::is_exr(input.fill_buf().map_err(|e| e.to_string())?) {
+        let head = input.fill_buf().map_err(|e| e.to_string())?;
+        if exr::is_exr(head) {
             return exr::header(input);
+        } else if ktx2::is_ktx2(head) {
+            return ktx2::header(input);
         }
         let decoder = reader(input)?.into_decoder().map_err(|e| e.to_string())?;
         let (width, height) = decoder.dimensions();
@@ -135,7 +141,7 @@ fn reader(input: Box<dyn Input>) -> Result<ImageReader<Box<dyn Input>>, String> 
         reader.set_format(ImageFormat::Tga);
     }
     if reader.format().is_none() {
-        return Err("is not a PNG, JPEG, WebP, TIFF, TGA, BMP, Radiance HDR or OpenEXR file".into());
+        return Err("is not a PNG, JPEG, WebP, TIFF, TGA, BMP, Radiance HDR, OpenEXR or KTX2 file".into());
     }
     Ok(reader)
 }

@@ -5,6 +5,7 @@
 mod bitmap;
 mod decode;
 mod exr;
+mod ktx2;
 mod lookup;
 mod prepare;
 

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, sync::Arc};
 
-use ajar_scene::{Diagnostic, Id, Image, LightKind, Material, Scene};
+use ajar_scene::{Diagnostic, Id, Image, LightKind, Scene};
 use rayon::prelude::*;
 
 use super::{
@@ -99,28 +99,9 @@ fn used_textures(scene: &Scene) -> BTreeSet<Id<ajar_scene::Texture>> {
         }
     }
     for material in materials.into_iter().filter_map(|id| scene.materials.get(id)) {
-        used.extend(textures_of(material));
+        used.extend(material.textures());
     }
     used
-}
-
-/// Handles of all textures of a material.
-fn textures_of(m: &Material) -> impl Iterator<Item = Id<ajar_scene::Texture>> {
-    let colors = [&m.base_color, &m.specular_color, &m.emission].map(|input| input.texture);
-    let scalars = [
-        &m.diffuse_roughness,
-        &m.metallic,
-        &m.roughness,
-        &m.anisotropy,
-        &m.specular,
-        &m.transmission,
-        &m.coat,
-        &m.coat_roughness,
-        &m.opacity,
-    ]
-    .map(|input| input.texture);
-    let inputs = colors.into_iter().chain(scalars).flatten().map(|input| input.texture);
-    inputs.chain(m.normal_map.map(|map| map.texture))
 }
 
 #[cfg(test)]

@@ -199,8 +199,9 @@ fn generate_tangents(scene: &Scene, instances: &[Instance]) -> Vec<Option<Vec<[g
 
 /// The texture coordinate set that a material's tangents follow, if it needs tangents.
 fn tangent_uv_set(scene: &Scene, material: &Material) -> Option<u32> {
-    if let Some(map) = material.normal_map {
-        return scene.textures.get(map.texture).map(|texture| texture.uv_set);
+    let map = material.normal_map.or(material.coat_normal_map).map(|map| map.texture);
+    if let Some(texture) = map.or(material.anisotropy_direction) {
+        return scene.textures.get(texture).map(|texture| texture.uv_set);
     }
     (material.anisotropy.value > 0.0).then_some(0)
 }

@@ -51,6 +51,33 @@ impl Place for Point<'_> {
     }
 }
 
+/// How a place is oriented.
+struct Shading {
+    /// Around the mapped normal.
+    frame: Frame,
+    /// Before any normal map.
+    normal: DVec3,
+    /// −1 where texture coordinates run clockwise, else 1.
+    turn: f64,
+    /// Of the frame before normal maps; `None` without tangents.
+    bitangent: Option<DVec3>,
+}
+
+impl Shading {
+    /// The world's normal for one of a normal map.
+    fn mapped(&self, map: Option<DVec3>, ng: DVec3) -> Option<DVec3> {
+        let (map, bitangent) = (map?, self.bitangent?);
+        let tangent = bitangent.cross(self.normal) * self.turn;
+        let n = (tangent * map.x + bitangent * map.y + self.normal * map.z).try_normalize()?;
+        Some(in_front(n, ng))
+    }
+}
+
+/// `n` on the side of `ng`.
+fn in_front(n: DVec3, ng: DVec3) -> DVec3 {
+    if n.dot(ng) < 0.0 { -n } else { n }
+}
+
 impl World {
     #[inline]
     pub(super) fn point(&self, instance: &Instance, triangle: u32, uv: [f64; 2]) -> Point<'_> {
@@ -116,9 +143,14 @@ impl World {
         vertex.kind = Kind::Surface;
         vertex.p = point.mix3(vertices);
         vertex.ng = ng;
-        vertex.frame = self.shading_frame(instance, material, &point, ng);
+        let shading = self.shading(instance, material, &point, ng);
+        vertex.frame = shading.frame;
         vertex.site = site;
-        material.set_bsdf(&self.textures, &point, &mut vertex.bsdf);
+        material.set_bsdf(&self.textures, &point, shading.turn, &mut vertex.bsdf);
+        if material.tilts_coat() {
+            let n = shading.mapped(material.mapped_coat_normal(&self.textures, &point), ng);
+            vertex.bsdf.tilt_coat(shading.frame.to_local(n.unwrap_or(shading.normal)));
+        }
         vertex.emitter = instance.first_emitter.map_or(Vertex::NO_EMITTER, |first| first + site.triangle);
         vertex.rounding = self.geometry.rounding(site.instance, vertices);
         vertex.mode = Mode::Smooth;
@@ -127,20 +159,24 @@ impl World {
     /// Shading frame: interpolated normal on the front side, tangent, normal map. It depends on the place alone, never on
     /// who looks (mlt.md §1.3).
     #[inline]
-    fn shading_frame(&self, instance: &Instance, material: &Material, point: &Point<'_>, ng: DVec3) -> Frame {
-        let in_front = |n: DVec3| if n.dot(ng) < 0.0 { -n } else { n };
+    fn shading(&self, instance: &Instance, material: &Material, point: &Point<'_>, ng: DVec3) -> Shading {
         let smooth = point.mesh.normals.as_ref().and_then(|normals| {
             let [a, b, c] = point.corners();
             let local = point.mix3(&[normals[a].as_dvec3(), normals[b].as_dvec3(), normals[c].as_dvec3()]);
             (instance.normal_to_world * local).try_normalize()
         });
-        let ns = smooth.map_or(ng, in_front);
-        let Some(tangent) = self.tangent(instance, point) else { return Frame::from_z(ns) };
+        let ns = smooth.map_or(ng, |n| in_front(n, ng));
+        let Some(tangent) = self.tangent(instance, point) else {
+            return Shading { frame: Frame::from_z(ns), normal: ns, turn: 1.0, bitangent: None };
+        };
         let frame = Frame::from_zx(ns, instance.to_world.transform_vector3(tangent.truncate()));
-        let Some(mapped) = material.mapped_normal(&self.textures, point) else { return frame };
-        let bitangent = frame.y * tangent.w * instance.handedness;
-        let n = (frame.x * mapped.x + bitangent * mapped.y + ns * mapped.z).try_normalize();
-        n.map_or(frame, |n| Frame::from_zx(in_front(n), frame.x))
+        let turn = tangent.w * instance.handedness;
+        let shading = Shading { frame, normal: ns, turn, bitangent: Some(frame.y * turn) };
+        let mapped = shading.mapped(material.mapped_normal(&self.textures, point), ng);
+        match mapped {
+            Some(n) => Shading { frame: Frame::from_zx(n, frame.x), ..shading },
+            None => shading,
+        }
     }
 
     fn tangent(&self, instance: &Instance, point: &Point<'_>) -> Option<glam::DVec4> {

@@ -60,6 +60,12 @@ fn edits(keys: &mut Keys<'_>, assets: &mut Assets) -> Vec<Edit> {
     found.input("specular", 0.0..=1.0, |m| &mut m.specular);
     found.input("specular_color", 0.0..=1.0, |m| &mut m.specular_color);
     found.input("transmission", 0.0..=1.0, |m| &mut m.transmission);
+    found.input("diffuse_transmission", 0.0..=1.0, |m| &mut m.diffuse_transmission);
+    found.input("diffuse_transmission_color", 0.0..=1.0, |m| &mut m.diffuse_transmission_color);
+    found.input("sheen_color", 0.0..=1.0, |m| &mut m.sheen_color);
+    found.input("sheen_roughness", 0.0..=1.0, |m| &mut m.sheen_roughness);
+    found.input("film", 0.0..=1.0, |m| &mut m.film);
+    found.input("film_thickness", 0.0.., |m| &mut m.film_thickness);
     found.input("coat", 0.0..=1.0, |m| &mut m.coat);
     found.input("coat_roughness", 0.0..=1.0, |m| &mut m.coat_roughness);
     found.input("emission", 0.0.., |m| &mut m.emission);
@@ -68,6 +74,8 @@ fn edits(keys: &mut Keys<'_>, assets: &mut Assets) -> Vec<Edit> {
         m.anisotropy_rotation = degrees.to_radians() as f32;
     });
     found.value("ior", number(1.0..), |m, ior| m.ior = ior as f32);
+    found.value("dispersion", number(0.0..), |m, dispersion| m.dispersion = dispersion as f32);
+    found.value("film_ior", number(1.0..), |m, ior| m.film_ior = ior as f32);
     found.value("coat_ior", number(1.0..), |m, ior| m.coat_ior = ior as f32);
     found.value("attenuation_color", Vec3::read(0.0..=1.0), |m, color| m.attenuation_color = color);
     found.value("attenuation_distance", distance_or_infinity, |m, distance| {
@@ -78,7 +86,9 @@ fn edits(keys: &mut Keys<'_>, assets: &mut Assets) -> Vec<Edit> {
     found.value("cull_back", flag, |m, on| m.cull_back = on);
     found.value("unlit", flag, |m, on| m.unlit = on);
     found.alpha();
-    found.normal_map();
+    found.anisotropy_direction();
+    found.normal_map("normal", |m| &mut m.normal_map);
+    found.normal_map("coat_normal", |m| &mut m.coat_normal_map);
     found.edits
 }
 
@@ -132,16 +142,22 @@ impl Found<'_, '_> {
         }
     }
 
-    fn normal_map(&mut self) {
-        let map = self.assets.texture(self.keys, "normal_texture", Use::Normal);
-        let scale = self.keys.optional("normal_scale", number(ANY)).map(|scale| scale as f32);
+    fn anisotropy_direction(&mut self) {
+        if let Some(map) = self.assets.texture(self.keys, "anisotropy_direction_texture", Use::Normal) {
+            self.edits.push(Box::new(move |m| m.anisotropy_direction = Some(map.texture)));
+        }
+    }
+
+    fn normal_map(&mut self, name: &str, field: fn(&mut Material) -> &mut Option<NormalMap>) {
+        let map = self.assets.texture(self.keys, &format!("{name}_texture"), Use::Normal);
+        let scale = self.keys.optional(&format!("{name}_scale"), number(ANY)).map(|scale| scale as f32);
         if let Some(map) = map {
             let map = NormalMap { texture: map.texture, scale: scale.unwrap_or(1.0) };
-            self.edits.push(Box::new(move |material| material.normal_map = Some(map)));
+            self.edits.push(Box::new(move |material| *field(material) = Some(map)));
         } else if let Some(scale) = scale {
             // Without a texture of its own, the key scales the map that the import has.
             self.edits.push(Box::new(move |material| {
-                material.normal_map.iter_mut().for_each(|map| map.scale = scale);
+                field(material).iter_mut().for_each(|map| map.scale = scale);
             }));
         }
     }

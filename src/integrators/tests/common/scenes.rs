@@ -23,6 +23,8 @@ pub const SCENES: &[TestScene] = &[
     scene("rough metal and plastic", 6, rough_metal_and_plastic),
     scene("mirror and glass", 8, mirror_and_glass),
     scene("rough glass", 8, rough_glass),
+    scene("prisms", 8, prisms),
+    scene("cloth, leaf and pearl", 6, cloth_leaf_and_pearl),
     scene("point light", 5, point_light),
     scene("spot light", 5, spot_light),
     scene("sun without extent", 5, directional_light),
@@ -105,6 +107,52 @@ fn rough_glass() -> World {
         ..Material::default()
     });
     b.mesh(shapes::sphere(Vec3::new(0.1, -0.4, 0.2), 0.5, 16, true), frosted);
+    b.world(32)
+}
+
+fn prisms() -> World {
+    let mut b = room(true);
+    let mut glass = |roughness| {
+        b.material(Material {
+            transmission: Input::constant(1.0),
+            roughness: Input::constant(roughness),
+            dispersion: 4.0,
+            ..Material::default()
+        })
+    };
+    let (smooth, rough) = (glass(0.0), glass(0.4));
+    b.mesh(shapes::sphere(Vec3::new(-0.4, -0.5, 0.2), 0.4, 16, true), smooth);
+    b.mesh(shapes::cuboid(Vec3::new(0.2, -0.8, -0.2), Vec3::new(0.8, 0.0, 0.4), false), rough);
+    b.world(32)
+}
+
+fn cloth_leaf_and_pearl() -> World {
+    let mut b = room(true);
+    let cloth = b.material(Material {
+        base_color: Input::constant(Vec3::new(0.2, 0.1, 0.4)),
+        sheen_color: Input::constant(Vec3::new(0.9, 0.7, 0.8)),
+        sheen_roughness: Input::constant(0.4),
+        coat: Input::constant(0.5),
+        ..Material::default()
+    });
+    let leaf = b.material(Material {
+        base_color: Input::constant(Vec3::new(0.3, 0.5, 0.1)),
+        diffuse_transmission: Input::constant(0.6),
+        diffuse_transmission_color: Input::constant(Vec3::new(0.7, 0.9, 0.2)),
+        attenuation_color: Vec3::new(0.9, 0.7, 0.5),
+        attenuation_distance: 0.5,
+        ..Material::default()
+    });
+    let pearl = b.material(Material {
+        film: Input::constant(1.0),
+        film_thickness: Input::constant(500.0),
+        roughness: Input::constant(0.3),
+        ..Material::default()
+    });
+    b.mesh(shapes::sphere(Vec3::new(-0.5, -0.6, -0.2), 0.4, 16, true), cloth);
+    b.mesh(shapes::quad(Vec3::new(-0.6, 0.2, -0.5), Vec3::X * 1.2, Vec3::Z), leaf);
+    b.mesh(shapes::cuboid(Vec3::new(-0.1, -1.0, 0.3), Vec3::new(0.2, -0.5, 0.6), false), leaf);
+    b.mesh(shapes::sphere(Vec3::new(0.5, -0.6, 0.2), 0.4, 16, true), pearl);
     b.world(32)
 }
 

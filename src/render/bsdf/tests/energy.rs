@@ -17,7 +17,7 @@ fn albedo(bsdf: &Bsdf, w_l: DVec3, radii: u32) -> Rgb {
             }
         }
     }
-    for mode in [Mode::DeltaReflect, Mode::DeltaTransmit] {
+    for mode in DELTAS {
         sum += bsdf.delta(side, w_l, mode).map_or(Rgb::ZERO, |event| event.reflectance);
     }
     sum
@@ -28,13 +28,20 @@ const ROUGHNESSES: [f64; 8] = [0.0, 0.04, 0.1, 0.25, 0.4, 0.6, 0.8, 1.0];
 
 /// Albedos of a lossless material over angle and roughness must be 1.
 fn furnace(name: &str, sides: &[f64], with_roughness: impl Fn(f64) -> SurfaceParameters) {
+    // Tables of anisotropic surfaces have two widths and two directions, and fewer nodes along each.
+    // The lobes of brushed surfaces are blades, which the rule must not miss, and their tables have fewer nodes.
+    let (tolerance, radii) = match name {
+        "brushed metal" => (0.008, 200),
+        "brushed plastic" => (0.013, 200),
+        _ => (0.005, 72),
+    };
     let mut worst = 0f64;
     for roughness in ROUGHNESSES {
         let bsdf = Bsdf::new(&with_roughness(roughness));
         for cos in COSINES {
             for side in sides {
-                let a = albedo(&bsdf, at(cos * side, 0.3), 72).x;
-                assert!((a - 1.0).abs() < 0.005, "{name} roughness {roughness} cos {}: {a}", cos * side);
+                let a = albedo(&bsdf, at(cos * side, 0.3), radii).x;
+                assert!((a - 1.0).abs() < tolerance, "{name} roughness {roughness} cos {}: {a}", cos * side);
                 worst = worst.max((a - 1.0).abs());
             }
         }
@@ -45,6 +52,31 @@ fn furnace(name: &str, sides: &[f64], with_roughness: impl Fn(f64) -> SurfacePar
 #[test]
 fn lossless_surfaces_return_all_light() {
     furnace("metal", &[1.0, -1.0], |roughness| SurfaceParameters { metallic: 1.0, roughness, ..PLAIN });
+    furnace("brushed metal", &[1.0], |roughness| SurfaceParameters {
+        metallic: 1.0,
+        roughness,
+        anisotropy: 0.7,
+        anisotropy_rotation: 0.5,
+        ..PLAIN
+    });
+    furnace("brushed plastic", &[1.0], |roughness| SurfaceParameters { roughness, anisotropy: 0.6, ..PLAIN });
+    furnace("prism", &[1.0, -1.0], |roughness| SurfaceParameters {
+        roughness,
+        transmission: 1.0,
+        dispersion: 1.0,
+        ..PLAIN
+    });
+    furnace("leaf", &[1.0, -1.0], |roughness| SurfaceParameters {
+        roughness,
+        diffuse_transmission: 0.4,
+        ..PLAIN
+    });
+    furnace("velvet", &[1.0], |sheen_roughness| SurfaceParameters {
+        sheen_color: Rgb::ONE,
+        sheen_roughness,
+        specular: 0.0,
+        ..PLAIN
+    });
     furnace("plastic", &[1.0], |roughness| SurfaceParameters { roughness, ..PLAIN });
     furnace("dense plastic", &[1.0], |roughness| SurfaceParameters { roughness, ior: 2.4, ..PLAIN });
     for ior in [1.1, 1.5, 2.4] {
@@ -144,9 +176,7 @@ fn albedo_estimates_are_near_the_mean() {
             .map(|i| albedo(&bsdf, at(((f64::from(i) + 0.5) / f64::from(n)).sqrt(), 0.3), 32) / f64::from(n))
             .sum();
         let excess = bsdf.albedo() - mean;
-        // Anisotropic surfaces lose more than the tables dare to say.
-        let most = if p.anisotropy > 0.0 { 0.2 } else { 0.06 };
-        let fair = excess.min_element() > -0.04 && excess.max_element() < most;
+        let fair = excess.min_element() > -0.04 && excess.max_element() < 0.06;
         assert!(fair, "{name}: {mean} estimated as {}", bsdf.albedo());
     }
 }

@@ -26,7 +26,15 @@ const PLAIN: SurfaceParameters = SurfaceParameters {
     specular: 1.0,
     specular_color: Rgb::ONE,
     ior: 1.5,
+    dispersion: 0.0,
     transmission: 0.0,
+    diffuse_transmission: 0.0,
+    diffuse_transmission_color: Rgb::ONE,
+    sheen_color: Rgb::ZERO,
+    sheen_roughness: 0.0,
+    film: 0.0,
+    film_ior: 1.3,
+    film_thickness: 400.0,
     thin_walled: false,
     coat: 0.0,
     coat_roughness: 0.0,
@@ -59,11 +67,27 @@ fn materials() -> Vec<(&'static str, SurfaceParameters)> {
         ("matched glass", SurfaceParameters { ior: 1.0, ..glass }),
         ("rough shell", SurfaceParameters { thin_walled: true, base_color: color, ..glass }),
         ("shell", SurfaceParameters { thin_walled: true, roughness: 0.0, ..glass }),
+        ("prism", SurfaceParameters { roughness: 0.0, dispersion: 3.0, base_color: color, ..glass }),
+        ("rough prism", SurfaceParameters { roughness: 0.4, dispersion: 3.0, base_color: color, ..glass }),
+        (
+            "leaf",
+            SurfaceParameters { diffuse_transmission: 0.6, diffuse_transmission_color: color, ..tinted },
+        ),
+        ("velvet", SurfaceParameters { sheen_color: color, sheen_roughness: 0.4, ..tinted }),
+        ("satin", SurfaceParameters { sheen_color: Rgb::ONE, sheen_roughness: 0.1, coat: 0.5, ..tinted }),
+        ("pearl", SurfaceParameters { film: 1.0, film_thickness: 550.0, ..tinted }),
+        ("anodized", SurfaceParameters { film: 0.8, film_ior: 1.8, roughness: 0.3, ..metal }),
+        ("bubble", SurfaceParameters { film: 1.0, thin_walled: true, roughness: 0.0, ..glass }),
+        ("frosted film", SurfaceParameters { film: 1.0, film_ior: 1.8, ..glass }),
         ("coated", SurfaceParameters { coat: 1.0, coat_roughness: 0.3, ..tinted }),
         ("lacquered", SurfaceParameters { coat: 0.7, coat_roughness: 0.0, ..metal }),
         (
             "everything",
             SurfaceParameters {
+                diffuse_transmission: 0.3,
+                sheen_color: color,
+                sheen_roughness: 0.5,
+                film: 0.5,
                 diffuse_roughness: 0.5,
                 metallic: 0.3,
                 anisotropy: 0.4,
@@ -78,6 +102,10 @@ fn materials() -> Vec<(&'static str, SurfaceParameters)> {
         ),
     ]
 }
+
+/// All Dirac events.
+const DELTAS: [Mode; 4] =
+    [Mode::DeltaReflect, Mode::DeltaTransmit, Mode::DeltaTransmitRed, Mode::DeltaTransmitBlue];
 
 fn rng(index: u64) -> Rng {
     Rng::new(11, Purpose::Test, 0, index)
@@ -101,7 +129,7 @@ fn rule(radii: u32, azimuths: u32) -> impl Iterator<Item = ([f64; 2], f64)> {
 
 /// Total probability of the Dirac events.
 fn dirac_probability(bsdf: &Bsdf, known: DVec3) -> f64 {
-    [Mode::DeltaReflect, Mode::DeltaTransmit]
+    DELTAS
         .into_iter()
         .filter_map(|mode| bsdf.delta(Side::TowardLight, known, mode))
         .map(|event| event.probability)
@@ -125,7 +153,16 @@ fn random_parameters(rng: &mut Rng) -> SurfaceParameters {
         specular: unit(rng),
         specular_color: Rgb::new(unit(rng), unit(rng), unit(rng)),
         ior: [1.0, 1.0005, 1.002, 1.33, 1.5, 2.4, 20.0][rng.below(7)],
+        // Every index has tables of its own.
+        dispersion: [0.0, 1.0, 5.0][rng.below(3)],
         transmission: unit(rng),
+        diffuse_transmission: if rng.below(2) == 0 { 0.0 } else { unit(rng) },
+        diffuse_transmission_color: Rgb::new(unit(rng), unit(rng), unit(rng)),
+        sheen_color: if rng.below(2) == 0 { Rgb::ZERO } else { Rgb::new(unit(rng), unit(rng), unit(rng)) },
+        sheen_roughness: unit(rng),
+        film: if rng.below(2) == 0 { 0.0 } else { unit(rng) },
+        film_ior: [1.0, 1.3, 1.8, 2.5][rng.below(4)],
+        film_thickness: unit(rng) * 1200.0,
         thin_walled: rng.below(3) == 0,
         coat: unit(rng),
         coat_roughness: unit(rng),

@@ -61,7 +61,15 @@ fn parameters_out_of_range_are_brought_inside() {
             specular: x,
             specular_color: Rgb::splat(x),
             ior: x,
+            dispersion: x,
             transmission: x,
+            diffuse_transmission: x,
+            diffuse_transmission_color: Rgb::splat(x),
+            sheen_color: Rgb::splat(x),
+            sheen_roughness: x,
+            film: x,
+            film_ior: x,
+            film_thickness: x,
             thin_walled: false,
             coat: x,
             coat_roughness: x,
@@ -74,5 +82,5 @@ fn parameters_out_of_range_are_brought_inside() {
 
 #[test]
 fn surfaces_are_small_enough_to_copy() {
-    assert!(size_of::<Bsdf>() <= 304, "{}", size_of::<Bsdf>());
+    assert!(size_of::<Bsdf>() <= 336, "{}", size_of::<Bsdf>());
 }

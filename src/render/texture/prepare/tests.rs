@@ -1,6 +1,6 @@
 use std::io::Cursor;
 
-use ajar_scene::{ImageSource, Input, Light, Mesh, Node, NormalMap, Severity, TextureInput};
+use ajar_scene::{ImageSource, Input, Light, Material, Mesh, Node, NormalMap, Severity, TextureInput};
 use glam::Vec3;
 
 use super::*;

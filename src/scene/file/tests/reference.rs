@@ -87,6 +87,8 @@ fn reference_names_every_key() {
         let key = match field.as_str() {
             "name" => continue,
             "normal_map" => "normal_texture",
+            "coat_normal_map" => "coat_normal_texture",
+            "anisotropy_direction" => "anisotropy_direction_texture",
             other => other,
         };
         assert!(keys.iter().any(|known| known == key), "{key}");
