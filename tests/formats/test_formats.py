@@ -47,6 +47,16 @@ def usdz(path: Path) -> None:
     assert pxr.CreateNewUsdzPackage(str(path.with_suffix(".usda")), str(path))
 
 
+def package(path: Path) -> None:
+    """USD in a package, with MaterialX and its image."""
+    pxr = pytest.importorskip("pxr.Sdf", reason="usd-core is not installed")
+    still.materialx(path.with_suffix(".usda"), "standard_surface")
+    writer = pxr.ZipFileWriter.CreateNew(str(path))
+    for file in (path.with_suffix(".usda"), path.with_suffix(".mtlx"), path.with_name("print.png")):
+        writer.AddFile(str(file), file.name)
+    writer.Save()
+
+
 FORMATS: dict[str, tuple[str, Callable[[Path], None]]] = {
     "gltf": ("still.gltf", still.gltf),
     "obj": ("still.obj", still.obj),
@@ -54,6 +64,7 @@ FORMATS: dict[str, tuple[str, Callable[[Path], None]]] = {
     "usdc": ("still.usdc", usdc),
     "usdz": ("still.usdz", usdz),
     "standard_surface": ("still.usda", lambda path: still.materialx(path, "standard_surface")),
+    "package_of_materialx": ("still.usdz", package),
     "open_pbr": ("still.usda", lambda path: still.materialx(path, "open_pbr_surface")),
 }
 

@@ -24,8 +24,8 @@ READER = """
 import sys
 import numpy as np
 from pxr import Usd, UsdGeom
-total = 0
-for prim in Usd.Stage.Open(sys.argv[1]).Traverse():
+total, stage = 0, Usd.Stage.Open(sys.argv[1])
+for prim in stage.Traverse():
     if prim.IsA(UsdGeom.Mesh):
         mesh = UsdGeom.Mesh(prim)
         attributes = [mesh.GetPointsAttr(), mesh.GetNormalsAttr(), mesh.GetFaceVertexCountsAttr(),

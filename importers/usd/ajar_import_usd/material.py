@@ -162,7 +162,7 @@ class Materials:
     def image(self, path: str) -> int:
         """The index of an image; those in packages are copied."""
         if path not in self.images:
-            name = os.path.basename(path.rstrip("]"))
+            name = os.path.basename(Ar.SplitPackageRelativePathInner(path)[1] or path)
             if Ar.IsPackageRelativePath(path):
                 asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(path))
                 if not asset:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from pxr import Sdf, Usd, UsdShade
+from pxr import Ar, Sdf, Usd, UsdShade
 
 from .report import Report
 
@@ -72,7 +73,7 @@ def converted(path: str, place: Any, report: Report) -> Any:
     stage.SetDefaultPrim(stage.DefinePrim("/MaterialX"))
     document = read(path, place, report)
     if document:
-        writer = Writer(stage, Path(path), document)
+        writer = Writer(stage, path, document)
         for material in document.getMaterialNodes():
             writer.material(material, Sdf.Path("/MaterialX/Materials").AppendChild(material.getName()))
     return layer
@@ -85,7 +86,7 @@ def read(path: str, place: Any, report: Report) -> Any:
 
     document = mx.createDocument()
     try:
-        text = Path(path).read_text("utf-8")
+        text = contents(path)
         mx.readFromXmlString(document, text)
     except (OSError, UnicodeDecodeError, mx.Exception) as error:
         report.warn(place, f"the MaterialX file cannot be read: {error}")
@@ -95,11 +96,30 @@ def read(path: str, place: Any, report: Report) -> Any:
     return document
 
 
+def contents(path: str) -> str:
+    """The text of a file, which may lie in a package."""
+    if not Ar.IsPackageRelativePath(path):
+        return Path(path).read_text("utf-8")
+    asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(path))
+    if not asset:
+        raise OSError("it is not in the package")
+    return bytes(asset.GetBuffer()).decode("utf-8")
+
+
 class Writer:
     """Writes the materials of a document as shaders of UsdShade."""
 
-    def __init__(self, stage: Usd.Stage, path: Path, document: Any) -> None:
-        self.stage, self.folder, self.document = stage, path.parent, document
+    def __init__(self, stage: Usd.Stage, path: str, document: Any) -> None:
+        self.stage, self.path, self.document = stage, path, document
+
+    def beside(self, name: str) -> str:
+        """Where a file lies that is named relative to the document."""
+        if not Ar.IsPackageRelativePath(self.path):
+            return str(Path(self.path).parent / name)
+        package, inner = Ar.SplitPackageRelativePathInner(self.path)
+        return str(
+            Ar.JoinPackageRelativePath(package, posixpath.normpath(posixpath.join(posixpath.dirname(inner), name)))
+        )
 
     def material(self, material: Any, path: Sdf.Path) -> None:
         """A material and all nodes of the document that it reads."""
@@ -146,8 +166,7 @@ class Writer:
         """A constant, a name or a file."""
         attribute = made.GetAttr()
         if given.getType() == "filename":
-            file = self.folder / given.getResolvedValueString()
-            attribute.Set(Sdf.AssetPath(str(file)))
+            attribute.Set(Sdf.AssetPath(self.beside(given.getResolvedValueString())))
         elif given.getType() in ("string", "boolean", "integer", "float"):
             attribute.Set(kind.type.pythonClass(given.getValue()) if kind.type.pythonClass else given.getValue())
         else:
