@@ -70,21 +70,43 @@ impl Said {
 /// The import that the program's end tells.
 pub(super) fn imported(name: &str, end: End, request: &ImportRequest) -> Result<Imported, Diagnostic> {
     let mut said = Said::new(&end.messages);
+    if end.status.success() || said.error.is_some() {
+        return decoded(name, said, end.output, request);
+    }
+    let last = said.other.split_off(said.other.len().saturating_sub(LAST_LINES)).join("\n    ");
+    let error = Diagnostic::error(format!("{name} failed with {}", end.status)).in_file(&request.path);
+    Err(if last.is_empty() { error } else { error.hint(format!("it said\n    {last}")) })
+}
+
+/// What the plug-in `name` printed for the file of `request`, on standard output and standard error, as an import.
+///
+/// # Errors
+/// The one that it tells, or its output is no scene.
+pub fn answer(
+    name: &str,
+    output: Vec<u8>,
+    messages: &[u8],
+    request: &ImportRequest,
+) -> Result<Imported, Diagnostic> {
+    decoded(name, Said::new(messages), output, request)
+}
+
+fn decoded(
+    name: &str,
+    mut said: Said,
+    output: Vec<u8>,
+    request: &ImportRequest,
+) -> Result<Imported, Diagnostic> {
     if let Some(error) = said.error {
         return Err(error.in_file(&request.path));
-    }
-    if !end.status.success() {
-        let last = said.other.split_off(said.other.len().saturating_sub(LAST_LINES)).join("\n    ");
-        let error = Diagnostic::error(format!("{name} failed with {}", end.status)).in_file(&request.path);
-        return Err(if last.is_empty() { error } else { error.hint(format!("it said\n    {last}")) });
     }
     for line in said.other {
         said.report.add(Diagnostic::note(format!("{name} said: {line}")));
     }
-    let decoded = if gltf::is_container(&end.output) {
-        gltf::decode(end.output, request)
+    let decoded = if gltf::is_container(&output) {
+        gltf::decode(output, request)
     } else {
-        ajar::decode(&end.output, request)
+        ajar::decode(&output, request)
     };
     let mut imported = decoded.map_err(|error| {
         let message = format!("{name} handed over no usable scene: {}", error.message);

@@ -47,6 +47,7 @@ impl Importer for PlugIns {
     }
 }
 
+pub use answer::answer;
 pub(crate) use find::claimant;
 
 /// Lets a plug-in import the file of `request`; `input` goes to its standard input.
