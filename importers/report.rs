@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, path::Path};
 
-use ajar_scene::Diagnostic;
+use ajar_scene::{Diagnostic, Loss, Severity};
 
 /// Distinct messages that one file may cause.
 const MOST: usize = 100;
@@ -16,8 +16,11 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// Adds a diagnostic.
-    pub fn add(&mut self, diagnostic: Diagnostic) {
+    /// Adds a diagnostic; a warning is about something that was dropped unless it says something else.
+    pub fn add(&mut self, mut diagnostic: Diagnostic) {
+        if diagnostic.severity == Severity::Warning {
+            diagnostic.loss.get_or_insert(Loss::Dropped);
+        }
         if let Some((_, more)) =
             self.by_message.get(&diagnostic.message).and_then(|&at| self.entries.get_mut(at))
         {
@@ -30,7 +33,12 @@ impl Report {
         }
     }
 
-    /// Adds a warning about an element.
+    /// Adds a warning about an element that is shown, but not as the file says.
+    pub fn approximate(&mut self, element: impl Into<String>, message: impl Into<String>) {
+        self.add(Diagnostic::warning(message).losing(Loss::Approximated).element(element));
+    }
+
+    /// Adds a warning about an element that was dropped.
     pub fn warn(&mut self, element: impl Into<String>, message: impl Into<String>) {
         self.add(Diagnostic::warning(message).element(element));
     }
@@ -54,7 +62,8 @@ impl Report {
             })
             .collect();
         if self.beyond > 0 {
-            all.push(Diagnostic::warning(format!("{} more diagnostics are not shown", self.beyond)));
+            let message = format!("{} more diagnostics are not shown", self.beyond);
+            all.push(Diagnostic::warning(message).losing(Loss::Dropped));
         }
         for diagnostic in &mut all {
             diagnostic.file.get_or_insert_with(|| file.into());

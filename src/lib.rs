@@ -4,6 +4,8 @@
 pub mod checkpoint;
 pub mod cli;
 pub mod image;
+mod kept;
 pub mod merge;
 pub mod session;
 pub mod shard;
+mod words;

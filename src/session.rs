@@ -18,7 +18,7 @@ use ajar_scene::{
 };
 use glam::DAffine3;
 
-use crate::shard::Shard;
+use crate::{kept::kept, shard::Shard};
 
 /// A loaded file: the scene and what the file says about rendering it.
 #[derive(Debug)]
@@ -41,6 +41,8 @@ pub struct LoadOptions<'a> {
     pub set: &'a [String],
     /// Whether warnings are errors.
     pub strict: bool,
+    /// Folders below which files may be read besides the folder of the file.
+    pub allow: &'a [PathBuf],
     /// Bytes that no importer may exceed.
     pub memory_limit: u64,
     /// Variants and moment of the assets, over those that a scene file says.
@@ -69,17 +71,21 @@ pub fn open(path: &Path, options: &LoadOptions<'_>) -> Result<SceneFile, Vec<Dia
     let memory_limit = options.memory_limit;
     let import = |request: &ImportRequest| {
         let choice = options.choice.or(&request.choice);
-        ajar_importers::import(&ImportRequest { memory_limit, choice, ..request.clone() })
+        let mut allowed = request.allowed.clone();
+        allowed.extend_from_slice(options.allow);
+        ajar_importers::import(&ImportRequest { allowed, memory_limit, choice, ..request.clone() })
     };
     let overrides = Overrides::parse(options.set)?;
+    let request = ImportRequest { allowed: options.allow.to_vec(), ..ImportRequest::new(path) };
     let mut file = if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
         whole(path, options.choice).map_err(|d| vec![d])?;
-        ajar_scene::load(path, &overrides, &import)?
+        ajar_scene::load(&request, &overrides, &import)?
     } else {
-        let imported = import(&ImportRequest::new(path)).map_err(|d| vec![d])?;
+        let imported = import(&request).map_err(|d| vec![d])?;
         ajar_scene::load_asset(path, &overrides, imported)?
     };
-    file.diagnostics.extend(about(path, file.scene.validate()));
+    let kept = kept(&file.scene, &file.diagnostics);
+    file.diagnostics.extend(about(path, file.scene.validate().into_iter().chain([kept])));
     let least = if options.strict { Severity::Warning } else { Severity::Error };
     if file.diagnostics.iter().any(|d| d.severity >= least) {
         return Err(file.diagnostics);

@@ -26,7 +26,14 @@ const LIMIT: f64 = 5.0;
 fn world(scene: &str) -> World {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene).join("scene.toml");
     let choice = Choice::default();
-    let options = LoadOptions { size: None, set: &[], strict: false, memory_limit: 4 << 30, choice: &choice };
+    let options = LoadOptions {
+        size: None,
+        set: &[],
+        strict: false,
+        allow: &[],
+        memory_limit: 4 << 30,
+        choice: &choice,
+    };
     let file = load(&path, &options).unwrap().file;
     let camera = choose_camera(&file.scene, file.render.camera.as_deref()).unwrap();
     prepare_world(file.scene, camera, [WIDTH, HEIGHT], 4 << 30).unwrap().0

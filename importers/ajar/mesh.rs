@@ -1,6 +1,6 @@
 //! Meshes: triangles as they are, or polygons that become triangles.
 
-use ajar_scene::{Arena, Diagnostic, Id, Material, Mesh, Node};
+use ajar_scene::{Arena, Diagnostic, Id, Loss, Material, Mesh, Node};
 use bytemuck::Pod;
 use glam::{Vec2, Vec3, Vec4};
 use serde::{Deserialize, de::DeserializeOwned};
@@ -290,5 +290,6 @@ fn dropped(degenerate: usize, crossing: usize, element: &str) -> Option<Diagnost
             count(crossing)
         ),
     };
-    Some(Diagnostic::warning(message).element(element))
+    let loss = if degenerate > 0 { Loss::Dropped } else { Loss::Approximated };
+    Some(Diagnostic::warning(message).losing(loss).element(element))
 }

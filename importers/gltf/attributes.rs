@@ -106,7 +106,7 @@ impl Vertices<'_> {
             return Err(Diagnostic::error("32-bit integers are no vertex attribute").element(name));
         }
         if accessor.is_all_zeros() {
-            context.report.warn(name, "the accessor has no data, all its elements are zero");
+            context.report.approximate(name, "the accessor has no data, all its elements are zero");
         }
         context.charge(self.used.len() as u64 * width * 4, name)
     }
@@ -134,12 +134,13 @@ impl Vertices<'_> {
             *normal = found.map_or(Vec3::ZERO, |(normal, _)| normal);
         }
         if long && self.as_written() {
-            context.report.warn(&name, "normals are not of unit length; they are normalized");
+            context.report.approximate(&name, "normals are not of unit length; they are normalized");
         }
         if degenerate {
-            context
-                .report
-                .warn(&name, "normals are zero or not finite; they are replaced by those of the triangles");
+            context.report.approximate(
+                &name,
+                "normals are zero or not finite; they are replaced by those of the triangles",
+            );
             replace_missing(&mut normals, positions, triangles);
         }
         Ok(Some(normals))
@@ -172,7 +173,7 @@ impl Vertices<'_> {
         for (&i, direction) in self.used.iter().zip(directions) {
             let [.., sign] = accessor.get::<4>(i, 0.0);
             let Some((tangent, length)) = unit(direction).filter(|_| sign.abs() > 0.0) else {
-                context.report.warn(&name, "tangents are zero or not finite; they are computed anew");
+                context.report.approximate(&name, "tangents are zero or not finite; they are computed anew");
                 return Ok(None);
             };
             sloppy |= (length - 1.0).abs() > UNIT_TOLERANCE || sign.abs() != 1.0;
@@ -181,7 +182,7 @@ impl Vertices<'_> {
         if sloppy && self.as_written() {
             context
                 .report
-                .warn(&name, "tangents are not of unit length with a sign of ±1; they are normalized");
+                .approximate(&name, "tangents are not of unit length with a sign of ±1; they are normalized");
         }
         Ok(Some(tangents))
     }
@@ -200,7 +201,7 @@ impl Vertices<'_> {
                 continue;
             };
             if sets.len() < set as usize {
-                context.report.warn(&name, "sets of a lower number are missing; they are zero");
+                context.report.approximate(&name, "sets of a lower number are missing; they are zero");
             }
             while sets.len() < set as usize {
                 context.charge(self.used.len() as u64 * 8, &name)?;
@@ -214,7 +215,7 @@ impl Vertices<'_> {
             };
             sets.push(self.used.iter().map(finite).collect());
             if broken {
-                context.report.warn(&name, "texture coordinates that are not finite are set to zero");
+                context.report.approximate(&name, "texture coordinates that are not finite are set to zero");
             }
         }
         Ok(sets)

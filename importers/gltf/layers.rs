@@ -71,7 +71,10 @@ fn ior(reader: &mut Reader, material: &mut Material) {
     let Some(Ior { ior: Some(ior) }) = reader.extension("KHR_materials_ior") else { return };
     let element = format!("{}.extensions.KHR_materials_ior.ior", reader.element);
     material.ior = if ior == 0.0 {
-        reader.context.report.warn(element, format!("an index of 0 is approximated by one of {MIRROR_IOR}"));
+        reader
+            .context
+            .report
+            .approximate(element, format!("an index of 0 is approximated by one of {MIRROR_IOR}"));
         MIRROR_IOR
     } else if ior.is_finite() && ior >= 1.0 {
         ior
@@ -79,7 +82,7 @@ fn ior(reader: &mut Reader, material: &mut Material) {
         reader
             .context
             .report
-            .warn(element, "the index of refraction is less than 1 or not finite; 1.5 is used");
+            .approximate(element, "the index of refraction is less than 1 or not finite; 1.5 is used");
         1.5
     };
 }
@@ -107,7 +110,7 @@ fn transmission(reader: &mut Reader, material: &mut Material) -> Result<(), Diag
             material.attenuation_distance = distance;
         } else {
             let element = format!("{}.extensions.KHR_materials_volume.attenuationDistance", reader.element);
-            reader.context.report.warn(element, "the distance is not positive; nothing is absorbed");
+            reader.context.report.approximate(element, "the distance is not positive; nothing is absorbed");
         }
     }
     Ok(())
@@ -122,7 +125,7 @@ fn specular(reader: &mut Reader, material: &mut Material) -> Result<(), Diagnost
     let mut color = Vec3::from(specular.specular_color_factor.unwrap_or([1.0; 3]));
     if !(color.is_finite() && color.min_element() >= 0.0) {
         let element = format!("{}.{NAME}.specularColorFactor", reader.element);
-        reader.context.report.warn(element, "the colour is negative or not finite; white is used");
+        reader.context.report.approximate(element, "the colour is negative or not finite; white is used");
         color = Vec3::ONE;
     }
     let field = format!("{NAME}.specularColorTexture");
@@ -143,7 +146,7 @@ fn raise_index(reader: &mut Reader, material: &mut Material, brightest: f32) {
         reader
             .context
             .report
-            .warn(element, "a colour above 1 is approximated by a higher index of refraction");
+            .approximate(element, "a colour above 1 is approximated by a higher index of refraction");
     }
 }
 

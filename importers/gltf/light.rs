@@ -111,7 +111,9 @@ fn cone(spot: Spot, context: &mut Context, element: &str) -> (f32, f32) {
     if 0.0 <= inner && inner < outer && outer <= FRAC_PI_2 + 1e-6 {
         return (inner, outer.min(FRAC_PI_2));
     }
-    context.report.warn(element, "the cone's angles contradict each other or exceed π/2; they are changed");
+    context
+        .report
+        .approximate(element, "the cone's angles contradict each other or exceed π/2; they are changed");
     let outer = if outer.is_nan() { FRAC_PI_4 } else { outer.clamp(LEAST_SOFTNESS, FRAC_PI_2) };
     (inner.max(0.0).min(outer - LEAST_SOFTNESS), outer)
 }

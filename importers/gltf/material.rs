@@ -152,7 +152,7 @@ impl<'a, 'b> Reader<'a, 'b> {
             }
             Checked::Invalid => {
                 let element = format!("{}.alphaMode", self.element);
-                self.context.report.warn(element, "unknown alpha mode, taken as OPAQUE");
+                self.context.report.approximate(element, "unknown alpha mode, taken as OPAQUE");
                 AlphaMode::Opaque
             }
         }
@@ -176,7 +176,7 @@ impl<'a, 'b> Reader<'a, 'b> {
         let mut scale = info.scale;
         if !scale.is_finite() {
             let element = format!("{}.normalTexture.scale", self.element);
-            self.context.report.warn(element, "the scale is not finite and is taken as 1");
+            self.context.report.approximate(element, "the scale is not finite and is taken as 1");
             scale = 1.0;
         }
         Ok(texture.map(|texture| NormalMap { texture, scale }))
@@ -192,7 +192,7 @@ impl<'a, 'b> Reader<'a, 'b> {
         let inside = if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) };
         if inside != value {
             let element = format!("{}.{field}", self.element);
-            self.context.report.warn(element, "the value does not lie between 0 and 1 and is clamped");
+            self.context.report.approximate(element, "the value does not lie between 0 and 1 and is clamped");
         }
         inside
     }

@@ -144,7 +144,7 @@ fn corners(
         return Err(Diagnostic::error("indices must be unsigned integers").element(element));
     }
     if indices.is_all_zeros() {
-        context.report.warn(&element, "the accessor has no data, all its elements are zero");
+        context.report.approximate(&element, "the accessor has no data, all its elements are zero");
     }
     context.charge(u64::from(indices.count) * CORNER, &element)?;
     let corners: Vec<_> = (0..indices.count).map(|i| indices.index(i)).collect();

@@ -134,7 +134,7 @@ fn sample(texture: &mut Texture, sampler: &Sampler, context: &mut Context, eleme
         Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
         Checked::Valid(WrappingMode::Repeat) => Wrap::Repeat,
         Checked::Invalid => {
-            context.report.warn(element, "unknown wrapping mode, taken as repeat");
+            context.report.approximate(element, "unknown wrapping mode, taken as repeat");
             Wrap::Repeat
         }
     };
@@ -144,7 +144,7 @@ fn sample(texture: &mut Texture, sampler: &Sampler, context: &mut Context, eleme
         Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
         Some(Checked::Valid(MagFilter::Linear)) | None => Filter::Linear,
         Some(Checked::Invalid) => {
-            context.report.warn(element, "unknown magnification filter, taken as linear");
+            context.report.approximate(element, "unknown magnification filter, taken as linear");
             Filter::Linear
         }
     };

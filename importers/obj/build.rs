@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, path::Path};
 
-use ajar_scene::{Diagnostic, Id, Material, Mesh, Node, Scene};
+use ajar_scene::{Diagnostic, Id, Loss, Material, Mesh, Node, Scene};
 use glam::{DVec3, Vec2, Vec3};
 
 use super::geometry::{Corner, Face, Geometry, NONE, Part};
@@ -70,7 +70,8 @@ pub(super) fn build(
     let corners_of = |face: &Face| &geometry.corners[face.first..face.first + face.count];
     if let Some(face) = geometry.faces.iter().find(|face| corners_of(face).iter().any(|c| bare(c, face))) {
         let message = "corners without texture coordinate beside others that have one are taken as (0, 0)";
-        report.add(Diagnostic::warning(message).in_file(file).at(face.line as usize, 1));
+        let warning = Diagnostic::warning(message).losing(Loss::Approximated);
+        report.add(warning.in_file(file).at(face.line as usize, 1));
     }
     let meshes = builders.into_iter().map(|builder| builder.mesh);
     place(geometry.parts.iter().map(|(part, _)| part).zip(meshes), materials, file, scene);
@@ -81,19 +82,21 @@ fn triangulate(geometry: &Geometry, normals: &mut [Vec3], file: &Path, report: &
     let mut triangles = Vec::with_capacity(geometry.faces.len());
     let (mut points, mut found) = (Vec::new(), Vec::new());
     for (index, face) in geometry.faces.iter().enumerate() {
-        let mut warn =
-            |message| report.add(Diagnostic::warning(message).in_file(file).at(face.line as usize, 1));
+        let mut lose = |loss, message| {
+            report.add(Diagnostic::warning(message).losing(loss).in_file(file).at(face.line as usize, 1));
+        };
         points.clear();
         let corners = &geometry.corners[face.first..face.first + face.count];
         points.extend(corners.iter().map(|corner| geometry.positions[corner.position as usize]));
         let Some(normal) = ears::vector_area(&points).try_normalize() else {
-            warn("faces without area are dropped");
+            lose(Loss::Dropped, "faces without area are dropped");
             continue;
         };
         normals[index] = normal.as_vec3();
         found.clear();
         if !ears::triangulate(&points, normal, &mut found) {
-            warn("a polygon crosses itself or is too intricate; its triangles may overlap");
+            let message = "a polygon crosses itself or is too intricate; its triangles may overlap";
+            lose(Loss::Approximated, message);
         }
         triangles.extend(found.iter().map(|triangle| Triangle {
             face: index as u32,

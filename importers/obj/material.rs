@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 
-use ajar_scene::{AlphaMode, Channel, ColorSpace, Diagnostic, Input, Material, NormalMap};
+use ajar_scene::{AlphaMode, Channel, ColorSpace, Diagnostic, Input, Loss, Material, NormalMap};
 use glam::Vec3;
 
 use super::{
@@ -57,11 +57,15 @@ impl Converter<'_, '_> {
         self.textures.warn(self.of, message.into());
     }
 
+    fn approximate(&mut self, message: impl Into<String>) {
+        self.textures.lose(self.of, message.into(), Loss::Approximated);
+    }
+
     /// Keeps weights and reflectances in [0, 1].
     fn unit(&mut self, name: &str, value: Vec3) -> Vec3 {
         let kept = value.clamp(Vec3::ZERO, Vec3::ONE);
         if kept != value {
-            self.warn(format!("{name} lies outside [0, 1] and is clamped"));
+            self.approximate(format!("{name} lies outside [0, 1] and is clamped"));
         }
         kept
     }
@@ -79,7 +83,7 @@ impl Converter<'_, '_> {
         let texture = map.and_then(|map| self.textures.add(self.of, &map_name, &map, ColorSpace::Srgb));
         let value = match (written.map(Vec3::from_array), texture) {
             (Some(Vec3::ZERO), Some(_)) => {
-                self.warn(format!("{name} is 0 and would hide {map_name}; taken as 1"));
+                self.approximate(format!("{name} is 0 and would hide {map_name}; taken as 1"));
                 Vec3::ONE
             }
             (None, Some(_)) => Vec3::ONE,
@@ -100,7 +104,7 @@ impl Converter<'_, '_> {
         let texture = map.and_then(|map| self.textures.add(self.of, &map_name, &map, ColorSpace::Raw));
         let value = match (written, texture) {
             (Some(0.0), Some(_)) => {
-                self.warn(format!("{name} is 0 and would hide {map_name}; taken as 1"));
+                self.approximate(format!("{name} is 0 and would hide {map_name}; taken as 1"));
                 1.0
             }
             (None, Some(_)) => 1.0,
@@ -115,7 +119,7 @@ impl Converter<'_, '_> {
         if let (Some(d), Some(tr)) = (self.of.source.dissolve, transparency)
             && (d + tr - 1.0).abs() > 1e-3
         {
-            self.warn("d and Tr disagree; d counts");
+            self.approximate("d and Tr disagree; d counts");
         }
         let opacity = self.of.source.dissolve.or(transparency.map(|tr| 1.0 - tr)).unwrap_or(1.0);
         let opacity = self.unit("d or 1 - Tr", Vec3::splat(opacity)).x;

@@ -44,7 +44,7 @@ mod texture;
 
 use std::collections::{HashMap, HashSet};
 
-use ajar_scene::{Diagnostic, Feature, Id, ImportRequest, Imported, Importer, Material, Severity};
+use ajar_scene::{Diagnostic, Feature, Id, ImportRequest, Imported, Importer, Loss, Material, Severity};
 
 use crate::report::Report;
 
@@ -98,7 +98,8 @@ impl Importer for Obj {
         report.add(Diagnostic::note("OBJ states no units or up axis; taken as metres, Y up").in_file(file));
         let (text, damaged) = lines::read(file, request.memory_limit)?;
         if damaged {
-            report.add(Diagnostic::warning("is not UTF-8; names may not be found").in_file(file));
+            let warning = Diagnostic::warning("is not UTF-8; names may not be found");
+            report.add(warning.losing(Loss::Approximated).in_file(file));
         }
         let geometry = geometry::parse(&text, file, request.memory_limit, &mut report)?;
         drop(text);

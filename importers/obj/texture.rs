@@ -10,8 +10,8 @@ use std::{
 };
 
 use ajar_scene::{
-    Channel, ColorSpace, Diagnostic, Id, Image, ImageSource, ImportRequest, Scene, Texture, TextureInput,
-    Wrap,
+    Channel, ColorSpace, Diagnostic, Id, Image, ImageSource, ImportRequest, Loss, Scene, Texture,
+    TextureInput, Wrap,
 };
 use glam::{Affine2, Mat2, Vec2, Vec4};
 
@@ -193,9 +193,14 @@ impl Textures<'_> {
         })
     }
 
-    /// Reports something about the material.
+    /// Reports something about the material that is dropped.
     pub fn warn(&mut self, of: &Definition, message: String) {
-        let warning = Diagnostic::warning(message).in_file(&of.file).at(of.line, 1);
+        self.lose(of, message, Loss::Dropped);
+    }
+
+    /// Reports what of the material was approximated or dropped.
+    pub fn lose(&mut self, of: &Definition, message: String, loss: Loss) {
+        let warning = Diagnostic::warning(message).losing(loss).in_file(&of.file).at(of.line, 1);
         self.report.add(warning.element(format!("newmtl {}", of.source.name.escape_debug())));
     }
 }

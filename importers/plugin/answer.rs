@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use ajar_scene::{Cause, Diagnostic, ImportRequest, Imported, Severity};
+use ajar_scene::{Cause, Diagnostic, ImportRequest, Imported, Loss, Severity};
 use serde::Deserialize;
 
 use super::process::End;
@@ -20,6 +20,7 @@ enum Line {
         message: String,
         place: Option<String>,
         hint: Option<String>,
+        loss: Option<Loss>,
         #[serde(default)]
         cause: Cause,
     },
@@ -48,10 +49,14 @@ impl Said {
             match serde_json::from_str(line) {
                 Ok(Line::File { file }) => said.files.push(file),
                 Ok(Line::Progress { .. }) => {}
-                Ok(Line::Message { level, message, place, hint, cause }) => said.add(
-                    Diagnostic { severity: level, element: place, hint, ..Diagnostic::error(message) }
-                        .because(cause),
-                ),
+                Ok(Line::Message { level, message, place, hint, loss, cause }) => said.add(Diagnostic {
+                    severity: level,
+                    cause,
+                    loss,
+                    element: place,
+                    hint,
+                    ..Diagnostic::error(message)
+                }),
                 Err(_) => said.other.push(line.to_owned()),
             }
         }

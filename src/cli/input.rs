@@ -17,6 +17,9 @@ pub(super) struct Input {
     /// Treat everything that was approximated or dropped as an error
     #[arg(long)]
     strict: bool,
+    /// Files below this folder may be read too, besides those beside FILE; may be given several times
+    #[arg(long, value_name = "FOLDER")]
+    allow: Vec<PathBuf>,
     /// Most memory for geometry and for decoded textures, each: 512M, 8G
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes, default_value = "8G")]
     pub memory_limit: u64,
@@ -61,8 +64,8 @@ impl Input {
     }
 
     fn options<'a>(&'a self, size: Option<[u32; 2]>, choice: &'a Choice) -> LoadOptions<'a> {
-        let (set, strict, memory_limit) = (&self.set, self.strict, self.memory_limit);
-        LoadOptions { size, set, strict, memory_limit, choice }
+        let Self { set, strict, allow, memory_limit, .. } = self;
+        LoadOptions { size, set, strict: *strict, allow, memory_limit: *memory_limit, choice }
     }
 
     /// The least severity that makes a file unfit.

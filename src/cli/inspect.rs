@@ -3,7 +3,6 @@
 mod contents;
 mod optics;
 mod text;
-mod words;
 
 use ajar_scene::Severity;
 use serde_json::json;

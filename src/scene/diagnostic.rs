@@ -31,6 +31,16 @@ pub enum Cause {
     System,
 }
 
+/// What became of the part of a file that a warning is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Loss {
+    /// It is shown, but not as the file says.
+    Approximated,
+    /// It is not shown, or its effect is not.
+    Dropped,
+}
+
 /// One message about a file or a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
@@ -39,6 +49,9 @@ pub struct Diagnostic {
     /// What has to change.
     #[serde(default)]
     pub cause: Cause,
+    /// What an import lost; none where the message is about something else.
+    #[serde(default)]
+    pub loss: Option<Loss>,
     /// The file it is about.
     #[serde(serialize_with = "lossy")]
     pub file: Option<PathBuf>,
@@ -54,8 +67,8 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     fn new(severity: Severity, message: impl Into<String>) -> Self {
-        let cause = Cause::default();
-        Self { severity, cause, file: None, place: None, element: None, message: message.into(), hint: None }
+        let (cause, message) = (Cause::default(), message.into());
+        Self { severity, cause, loss: None, file: None, place: None, element: None, message, hint: None }
     }
 
     /// An error.
@@ -76,6 +89,12 @@ impl Diagnostic {
     /// The same, of this cause.
     pub fn because(mut self, cause: Cause) -> Self {
         self.cause = cause;
+        self
+    }
+
+    /// The same, about something that was approximated or dropped.
+    pub fn losing(mut self, loss: Loss) -> Self {
+        self.loss = Some(loss);
         self
     }
 

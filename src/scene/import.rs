@@ -108,7 +108,8 @@ impl ImportRequest {
         if inside(self.folder()) || self.allowed.iter().any(|folder| inside(folder)) {
             Ok(real)
         } else {
-            Err(refuse("lies outside the scene's folder").hint("move it there or allow its folder"))
+            Err(refuse("lies outside the scene's folder")
+                .hint("move it there, or allow its folder with --allow"))
         }
     }
 }

@@ -27,7 +27,7 @@ mod validate;
 pub use arena::{Arena, Id};
 pub use camera::{Camera, Projection};
 pub use defaults::framing_camera;
-pub use diagnostic::{Cause, Diagnostic, Severity};
+pub use diagnostic::{Cause, Diagnostic, Loss, Severity};
 pub use file::{Overrides, SCHEMA, SceneFile, Setting, load, load_asset};
 pub use import::{Choice, Feature, ImportRequest, Imported, Importer, Moment, Preference};
 pub use light::{Light, LightKind};

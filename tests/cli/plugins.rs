@@ -74,6 +74,31 @@ END"#
 }
 
 #[test]
+fn what_was_lost_is_told_apart() {
+    let line = |loss: &str| {
+        format!(
+            r#"echo '{{"level": "warning", "message": "fur {loss}"{}}}' >&2"#,
+            match loss {
+                "dropped" => String::new(),
+                loss => format!(r#", "loss": "{loss}""#),
+            }
+        )
+    };
+    let bench =
+        importing(&format!("{}\n{}\ncat << END\n{SCENE}\nEND", line("dropped"), line("approximated")));
+    let kept = "kept 1 mesh of 1 triangle; 1 thing approximated, 1 dropped";
+    run(&bench, "validate a.toy").exits(0).says(&[kept]);
+    let text = run(&bench, "inspect a.toy").exits(0).out;
+    let section = |title: &str| text.find(&format!("\n{title}\n")).unwrap();
+    assert!(section("approximated") < text.find("fur approximated").unwrap(), "{text}");
+    assert!(text.find("fur approximated") < Some(section("dropped")), "{text}");
+    let json = run(&bench, "inspect a.toy --json").exits(0).out;
+    let said: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let losses: Vec<_> = said["diagnostics"].as_array().unwrap().iter().map(|it| &it["loss"]).collect();
+    assert_eq!(losses[..2], ["dropped", "approximated"]);
+}
+
+#[test]
 fn files_that_it_reads_are_known() {
     let bench = importing(&format!("echo '{{\"file\": \"fur.png\"}}' >&2; cat << END\n{SCENE}\nEND"));
     run(&bench, "inspect a.toy --json").exits(0).prints(&["fur.png"]);

@@ -32,6 +32,17 @@ fn materials_of_assets_and_scenes_change() {
 }
 
 #[test]
+fn files_elsewhere_are_read_below_allowed_folders_only() {
+    let bench = Bench::new();
+    bench.write(
+        "looks/look.toml",
+        "extends = \"../kitchen/scene.toml\"\n[[import]]\nfile = \"../leaf.gltf\"\n",
+    );
+    bench.run("inspect looks/look.toml").exits(3).says(&["lies outside the scene's folder", "--allow"]);
+    bench.run("inspect looks/look.toml --allow kitchen --allow .").exits(0).prints(&["leaf", "box"]);
+}
+
+#[test]
 fn lists_are_changed_by_name_or_position() {
     let bench = Bench::new();
     let scene = "kitchen/scene.toml";

@@ -77,7 +77,9 @@ pub(super) fn apply(
             let element = format!("{element}.channels[{j}]");
             let Some(pointer) = pointer(channel, context, &element) else { continue };
             if !moved.insert(pointer.clone()) {
-                context.report.warn(element, "several animations move the same thing; the first counts");
+                context
+                    .report
+                    .approximate(element, "several animations move the same thing; the first counts");
                 continue;
             }
             let user = format!("{element}.sampler");

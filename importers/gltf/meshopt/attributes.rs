@@ -12,14 +12,14 @@ const TAIL: usize = 32;
 
 /// `count` elements of `stride` bytes; `None` if the stream is broken.
 pub(super) fn decode(bytes: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
-    if stride == 0 || stride > MOST || stride % 4 != 0 || bytes.first() != Some(&HEADER) {
+    if stride == 0 || stride > MOST || !stride.is_multiple_of(4) || bytes.first() != Some(&HEADER) {
         return None;
     }
     let end = bytes.len().checked_sub(stride.max(TAIL))?;
     let mut last = bytes.get(bytes.len() - stride..)?.to_vec();
     let mut rest = bytes.get(1..end)?;
     let mut decoded = vec![0; count * stride];
-    let block = (BLOCK / stride & !(GROUP - 1)).min(MOST);
+    let block = ((BLOCK / stride) & !(GROUP - 1)).min(MOST);
     for elements in decoded.chunks_mut(block * stride) {
         for (k, last) in last.iter_mut().enumerate() {
             let differences = column(&mut rest, elements.len() / stride)?;

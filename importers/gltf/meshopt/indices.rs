@@ -39,7 +39,7 @@ struct Decoder<'a> {
 /// `count` corners of triangles; `None` if the stream is broken.
 pub(super) fn triangles(bytes: &[u8], count: usize) -> Option<Vec<u32>> {
     let (&header, rest) = bytes.split_first()?;
-    if header != TRIANGLES || count % 3 != 0 {
+    if header != TRIANGLES || !count.is_multiple_of(3) {
         return None;
     }
     let (codes, rest) = rest.split_at_checked(count / 3)?;

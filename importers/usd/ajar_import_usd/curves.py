@@ -50,7 +50,7 @@ def curves(walk: Walk, prim: Usd.Prim, bound: str | None) -> list[int]:
         walk.report.warn(prim.GetPath(), "the curves are dropped: points and curveVertexCounts do not fit")
         return []
     if schema.GetNormalsAttr().HasValue():
-        walk.report.warn(prim.GetPath(), "ribbons are approximated by tubes: normals of curves are ignored")
+        walk.report.approximate(prim.GetPath(), "ribbons are approximated by tubes: normals of curves are ignored")
     is_hair = len(counts) > MANY
     basis = schema.GetBasisAttr().Get(walk.time) if schema.GetTypeAttr().Get(walk.time) == "cubic" else None
     kind = Kind(basis, schema.GetWrapAttr().Get(walk.time), 4 if is_hair else 12, 4 if is_hair else 8)
@@ -142,6 +142,6 @@ def read_widths(walk: Walk, schema: UsdGeom.BasisCurves, counts: np.ndarray, kin
     if len(values) == 1:
         return Widths("constant", values, counts)
     if per == "constant" or len(values) != of_curve.sum() or not np.all(np.isfinite(values)):
-        walk.report.warn(schema.GetPath(), "curves without widths that fit are drawn with width 1")
+        walk.report.approximate(schema.GetPath(), "curves without widths that fit are drawn with width 1")
         return Widths("constant", np.ones(1), counts)
     return Widths(per, values, np.cumsum(of_curve) - of_curve)

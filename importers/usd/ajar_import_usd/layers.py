@@ -34,7 +34,7 @@ class Jail:
         except (OSError, RuntimeError, ValueError) as error:
             raise StageError(f"{path!r} is no path: {error}", place) from error
         if not any(real.is_relative_to(folder) for folder in self.folders):
-            hint = "move it there or allow its folder"
+            hint = "move it there, or allow its folder with --allow"
             raise StageError(f"{path!r} lies outside the scene's folder", place, hint)
         return path
 

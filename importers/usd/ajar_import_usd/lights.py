@@ -55,7 +55,7 @@ class Lamp:
         if self.prim.GetAttribute("inputs:enableColorTemperature").Get(self.walk.time):
             color *= np.array(UsdLux.BlackbodyTemperatureAsRgb(self.get("colorTemperature", 6500.0)))
         if not np.all(np.isfinite(color)) or color.min() < 0:
-            self.warn("a negative colour is cut at 0")
+            self.approximate("a negative colour is cut at 0")
         return [max(float(c), 0.0) if math.isfinite(c) else 0.0 for c in color]
 
     @property
@@ -63,7 +63,7 @@ class Lamp:
         """Luminance before normalization."""
         strength = self.get("intensity", 1.0) * 2.0 ** min(self.get("exposure"), 1000.0)
         if strength < 0:
-            self.warn("a negative intensity is taken as 0")
+            self.approximate("a negative intensity is taken as 0")
         return max(strength, 0.0)
 
     @property
@@ -71,8 +71,12 @@ class Lamp:
         """Whether the area divides the strength."""
         return bool(self.prim.GetAttribute("inputs:normalize").Get(self.walk.time))
 
+    def approximate(self, message: str) -> None:
+        """The light does not shine as it says."""
+        self.walk.report.approximate(self.prim.GetPath(), message)
+
     def warn(self, message: str) -> None:
-        """A warning about this light."""
+        """Something of the light is dropped."""
         self.walk.report.warn(self.prim.GetPath(), message)
 
     def stretch(self) -> np.ndarray:
@@ -135,7 +139,7 @@ class Lamp:
         if not cone:
             return False
         if not self.prim.GetAttribute("treatAsPoint") or not self.prim.GetAttribute("treatAsPoint").Get(self.walk.time):
-            self.warn("a light with a shaping cone is approximated by a spot without extent: shadows get sharp")
+            self.approximate("a light with a shaping cone is approximated by a spot without extent: shadows get sharp")
         self.put(node, "spot", intensity=candela * self.walk.unit**2, inner=cone[0], outer=cone[1])
         return True
 
@@ -195,7 +199,7 @@ class Lamp:
         """DomeLight and DomeLight_1: the pole is +Y, or what the stage calls up."""
         layout = self.prim.GetAttribute("inputs:texture:format").Get(self.walk.time)
         if layout not in ("automatic", "latlong", None):
-            self.warn(f"a texture of format {layout!r} is read as latlong")
+            self.approximate(f"a texture of format {layout!r} is read as latlong")
         pole = self.prim.GetAttribute("poleAxis").Get(self.walk.time) if self.prim.HasAttribute("poleAxis") else "Y"
         if pole == "Z" or (pole == "scene" and self.walk.z_up):
             # Turns +Y to +Z, as Hydra does.
@@ -210,7 +214,7 @@ class Lamp:
             self.warn("normalize of a mesh light is ignored")
         mode = UsdLux.LightAPI(self.prim).GetMaterialSyncModeAttr().Get()
         if mode != UsdLux.Tokens.noMaterialResponse:
-            self.warn(f"a mesh light with materialSyncMode {mode!r} glows alike everywhere and reflects nothing")
+            self.approximate(f"a mesh light with materialSyncMode {mode!r} glows alike everywhere and reflects nothing")
         black = {"name": self.prim.GetName(), "base_color": [0, 0, 0], "specular": 0, "emission": color}
         material = self.walk.document.add("materials", black)
         for index in node.meshes:

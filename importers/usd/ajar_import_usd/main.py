@@ -55,6 +55,8 @@ def main() -> None:
     os.environ.pop("PXR_AR_DEFAULT_SEARCH_PATH", None)
     # Bindings of prims that do not apply the schema act all the same: no warning for each.
     os.environ["USD_SHADE_WARN_ON_MISSING_MATERIAL_BINDING_API"] = "0"
+    # That settings are set needs no banner.
+    os.environ["TF_ENV_SETTING_ALERTS_ENABLED"] = "0"
     sys.setrecursionlimit(20_000)
     try:
         if args.file is None:

@@ -93,7 +93,7 @@ class Materials:
             if unknown
             else "it has no surface shader"
         )
-        self.report.warn(material.GetPath(), f"the material is grey: {what}")
+        self.report.approximate(material.GetPath(), f"the material is grey: {what}")
         surface.item["base_color"] = [GREY] * 3
 
     def name_what_is_ignored(self, material: UsdShade.Material) -> None:

@@ -61,7 +61,7 @@ def mesh(walk: Walk, prim: Usd.Prim, bound: str | None) -> list[int]:
     if scheme in ("catmullClark", "loop"):
         item["subdivision"] = subdivision(walk, schema, topology)
         if scheme == "loop":
-            walk.report.warn(prim.GetPath(), "Loop subdivision is approximated by that of Catmull and Clark")
+            walk.report.approximate(prim.GetPath(), "Loop subdivision is approximated by that of Catmull and Clark")
     else:
         if scheme == "bilinear":
             walk.report.note(prim.GetPath(), "bilinear subdivision is left out; faces are what they are")
@@ -115,7 +115,9 @@ def finish(
     for index, name in enumerate(sets):
         found = primvars.texture_coordinates(walk, prim, name, sizes) if index in wanted else None
         if found is None and index in wanted:
-            walk.report.warn(prim.GetPath(), f"there are no texture coordinates {name!r}, which the material reads")
+            walk.report.approximate(
+                prim.GetPath(), f"there are no texture coordinates {name!r}, which the material reads"
+            )
         found = found or primvars.Values(np.zeros((1, 2), np.float32), None, "mesh")
         uvs.append(fit(found))
     if uvs:

@@ -40,7 +40,7 @@ class Network:
         try:
             return self.follow(shader, name, default)
         except UnsupportedError as unsupported:
-            self.report.warn(shader.GetPath(), f"{category(shader)}: {name!r} has its default: {unsupported}")
+            self.report.approximate(shader.GetPath(), f"{category(shader)}: {name!r} has its default: {unsupported}")
             return constant(default)
 
     def follow(self, shader: UsdShade.Shader, name: str, default: Any) -> Term:
@@ -144,7 +144,7 @@ def located(attribute: Usd.Attribute, asset: Sdf.AssetPath, jail: Jail, report: 
     report.file(path.split("[")[0])
     if "<UDIM>" in path:
         path = path.replace("<UDIM>", "1001")
-        report.warn(place, "of the tiles of a UDIM texture, only 1001 is read")
+        report.approximate(place, "of the tiles of a UDIM texture, only 1001 is read")
         jail.check(path, place)
     elif not asset.resolvedPath:
         raise UnsupportedError(f"the file {asset.path} is not there")

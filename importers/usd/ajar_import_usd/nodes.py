@@ -55,7 +55,7 @@ def uv_texture(network: Network, shader: UsdShade.Shader, output: UsdShade.Outpu
     except UnsupportedError as unsupported:
         if network.value(shader, "fallback")[0] is None:
             raise
-        network.report.warn(shader.GetPath(), f"the texture has its fallback colour: {unsupported}")
+        network.report.approximate(shader.GetPath(), f"the texture has its fallback colour: {unsupported}")
     if image is None:
         rgba = network.follow(shader, "fallback", (0, 0, 0, 1))
     else:
@@ -94,7 +94,7 @@ def image(network: Network, shader: UsdShade.Shader, output: UsdShade.Output) ->
         found = None
         if network.value(shader, "default")[0] is None:
             raise
-        network.report.warn(shader.GetPath(), "an image that is not there has its default colour")
+        network.report.approximate(shader.GetPath(), "an image that is not there has its default colour")
     if found is None:
         return network.follow(shader, "default", (0.0,) * size(output))
     return source(found, "rgba"[: size(output)])

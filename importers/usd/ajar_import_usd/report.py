@@ -44,9 +44,13 @@ class Report:
             json.dumps({key: value for key, value in line.items() if value is not None}), file=self.stream, flush=True
         )
 
-    def warn(self, place: object, message: str, hint: str | None = None) -> None:
-        """Something is approximated or dropped at `place`, mostly the path of a prim."""
-        self.say(level="warning", message=message, place=str(place) if place else None, hint=hint)
+    def approximate(self, place: object, message: str) -> None:
+        """What is at `place`, mostly the path of a prim, is not shown as the stage says."""
+        self.say(level="warning", message=message, place=str(place) if place else None, loss="approximated")
+
+    def warn(self, place: object, message: str) -> None:
+        """Something at `place` is dropped, or its effect is."""
+        self.say(level="warning", message=message, place=str(place) if place else None, loss="dropped")
 
     def note(self, place: object, message: str) -> None:
         """Something worth knowing."""

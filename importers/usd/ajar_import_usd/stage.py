@@ -95,11 +95,11 @@ def time_code(stage: Usd.Stage, moment: Moment, report: Report) -> Usd.TimeCode:
     """The time that is asked for, else the start, else the first samples."""
     rate = stage.GetTimeCodesPerSecond()
     if not (math.isfinite(rate) and rate > 0):
-        report.warn(None, f"timeCodesPerSecond is {rate:g}, taken as {DEFAULT_RATE:g}")
+        report.approximate(None, f"timeCodesPerSecond is {rate:g}, taken as {DEFAULT_RATE:g}")
         rate = DEFAULT_RATE
     start, end = stage.GetStartTimeCode(), stage.GetEndTimeCode()
     if stage.HasAuthoredTimeCodeRange() and end < start:
-        report.warn(None, f"endTimeCode {end:g} is before startTimeCode {start:g}")
+        report.approximate(None, f"endTimeCode {end:g} is before startTimeCode {start:g}")
     if moment.seconds is not None:
         return Usd.TimeCode(moment.seconds * rate)
     if moment.frame is not None:
@@ -117,13 +117,13 @@ def unit(stage: Usd.Stage, report: Report) -> float:
     if not UsdGeom.StageHasAuthoredMetersPerUnit(stage):
         report.note(None, "metersPerUnit is not said: a unit is taken as 0.01 m")
     if not (math.isfinite(metres) and metres > 0):
-        report.warn(None, f"metersPerUnit is {metres:g}, taken as 0.01")
+        report.approximate(None, f"metersPerUnit is {metres:g}, taken as 0.01")
         metres = 0.01
     for layer in stage.GetUsedLayers():
         other = layer.pseudoRoot.GetInfo(UsdGeom.Tokens.metersPerUnit)
         if layer.pseudoRoot.HasInfo(UsdGeom.Tokens.metersPerUnit) and not math.isclose(other, metres, rel_tol=1e-6):
             name = Path(layer.realPath or layer.identifier).name
-            report.warn(
+            report.approximate(
                 None, f"{name} is made in units of {other:g} m, the scene in {metres:g} m; USD does not rescale"
             )
     return metres
@@ -134,7 +134,7 @@ def z_up(stage: Usd.Stage, report: Report) -> bool:
     root = stage.GetRootLayer().pseudoRoot
     said = root.GetInfo(UsdGeom.Tokens.upAxis) if root.HasInfo(UsdGeom.Tokens.upAxis) else "Y"
     if said not in ("Y", "Z"):
-        report.warn(None, f"upAxis is {said!r}, taken as Y")
+        report.approximate(None, f"upAxis is {said!r}, taken as Y")
     return bool(said == "Z")
 
 

@@ -27,8 +27,12 @@ class Surface:
         self.uv_names: set[str] = set()
         self.color_primvar: str | None = None
 
+    def approximate(self, message: str) -> None:
+        """The shader is not shown as it says."""
+        self.materials.report.approximate(self.shader.GetPath(), f"{category(self.shader)}: {message}")
+
     def warn(self, message: str) -> None:
-        """A warning about the shader."""
+        """Something of the shader is dropped."""
         self.materials.report.warn(self.shader.GetPath(), f"{category(self.shader)}: {message}")
 
     def term(self, name: str, default: float | Sequence[float]) -> Term:
@@ -40,7 +44,7 @@ class Surface:
         term = self.term(name, default)
         if is_constant(term):
             return numbers(term)
-        self.warn(f"{name!r} cannot have an image here, it has its default")
+        self.approximate(f"{name!r} cannot have an image here, it has its default")
         return numbers(constant(default))
 
     def number(self, name: str, default: float) -> float:
@@ -56,7 +60,7 @@ class Surface:
         try:
             return product(a, b)
         except UnsupportedError:
-            self.warn(f"images of both {name!r} and {factor!r} cannot be multiplied; the second is taken as 1")
+            self.approximate(f"images of both {name!r} and {factor!r} cannot be multiplied; the second is taken as 1")
             return a
 
     def ignored(self, **defaults: float) -> None:
@@ -79,7 +83,7 @@ class Surface:
         try:
             self.item[key] = make()
         except UnsupportedError as unsupported:
-            self.warn(f"{key.replace('_', ' ')} has its default: {unsupported}")
+            self.approximate(f"{key.replace('_', ' ')} has its default: {unsupported}")
 
     def scalar(self, key: str, component: Component, most: float) -> Any:
         """A number, or a channel of a texture."""
@@ -130,7 +134,7 @@ class Surface:
         """Values that Ajar takes."""
         kept = min(max(value, 0.0), most)
         if not math.isclose(kept, value, abs_tol=1e-6):
-            self.warn(f"{key.replace('_', ' ')} {value:g} is limited to {kept:g}")
+            self.approximate(f"{key.replace('_', ' ')} {value:g} is limited to {kept:g}")
         return kept
 
     def set_normal(self, term: Term) -> None:
@@ -143,7 +147,7 @@ class Surface:
             return
         scale, bias = [c.scale / 2 for c in term[:3]], [(c.bias + 1) / 2 for c in term[:3]]
         if all(c.scale == 1 and c.bias == 0 for c in term[:3]):
-            self.warn("the normal map has no scale and bias, taken as 2 and −1")
+            self.approximate("the normal map has no scale and bias, taken as 2 and −1")
             scale, bias = [1.0] * 3, [0.0] * 3
         texture = self.texture(next(iter(sources)), [*scale, 1.0], [*bias, 0.0])  # type: ignore[arg-type]
         self.item["normal_map"] = {"texture": texture}

@@ -60,7 +60,7 @@ def preview_opacity(s: Surface) -> None:
         s.item |= {"base_color": WHITE, "transmission": 1.0, "thin_walled": True}
         return
     if not presence:
-        s.warn("transparency is approximated by presence: highlights fade with opacity")
+        s.approximate("transparency is approximated by presence: highlights fade with opacity")
     s.item["alpha_mode"] = "blend"
     s.set_number("opacity", opacity)
 
@@ -113,7 +113,7 @@ def scattered(s: Surface, base: Term, share: float, color: Term) -> Term:
     """Subsurface scattering as diffuse reflection."""
     if share <= 0:
         return base
-    s.warn("subsurface scattering is approximated by diffuse reflection")
+    s.approximate("subsurface scattering is approximated by diffuse reflection")
     try:
         return mixed(base, color, constant(share))
     except UnsupportedError:
@@ -128,7 +128,7 @@ def transmitted(s: Surface, base: Term, weight: str, color: str, depth: str) -> 
         return
     s.set_number("transmission", share)
     if not is_constant(share) or numbers(share)[0] < 1:
-        s.warn(f"{color!r} is ignored: light that is scattered and light that passes have one colour")
+        s.approximate(f"{color!r} is ignored: light that is scattered and light that passes have one colour")
     elif distance > 0:
         s.item["attenuation_color"] = [min(max(v, 1e-4), 1.0) for v in (s.numbers(color, WHITE) * 3)[:3]]
         s.item["attenuation_distance"] = distance * s.materials.unit

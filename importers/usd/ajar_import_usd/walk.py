@@ -109,7 +109,7 @@ class Walk:
             return False
         matrix = np.array(xformable.GetLocalTransformation(self.time))
         if not np.all(np.isfinite(matrix)):
-            self.report.warn(prim.GetPath(), "the transform is not finite, taken as identity")
+            self.report.approximate(prim.GetPath(), "the transform is not finite, taken as identity")
         elif not np.array_equal(matrix, np.eye(4)):
             node.transform = matrix
         return bool(xformable.GetResetXformStack())

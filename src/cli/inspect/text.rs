@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use ajar_scene::{Diagnostic, Setting};
+use ajar_scene::{Diagnostic, Loss, Setting};
 use serde_json::Value;
 
 use super::contents::{Bounds, Contents, Counts, MaterialEntry, NodeEntry, TextureEntry};
 use super::optics::{CameraEntry, LightEntry};
-use super::words::{bytes, grouped, many, number, plain, quoted, vector};
+use crate::words::{bytes, grouped, many, number, plain, quoted, vector};
 
 /// Children of one node, levels, and lines of the hierarchy that are shown unless all are asked for.
 const SIBLINGS: usize = 12;
@@ -33,7 +33,10 @@ pub(super) fn describe(contents: &Contents<'_>, all: bool) -> String {
         section("textures", textures.iter().map(texture)),
         section("settings", settings(contents.settings)),
     ];
-    sections.push(diagnostics.iter().map(Diagnostic::to_string).collect::<Vec<_>>().join("\n"));
+    let told = |loss| diagnostics.iter().filter(move |it| it.loss == loss).map(Diagnostic::to_string);
+    sections.push(section("approximated", told(Some(Loss::Approximated))));
+    sections.push(section("dropped", told(Some(Loss::Dropped))));
+    sections.push(told(None).collect::<Vec<_>>().join("\n"));
     sections.retain(|section| !section.is_empty());
     sections.join("\n\n")
 }

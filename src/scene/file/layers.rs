@@ -22,16 +22,16 @@ pub(super) struct Text {
     pub text: String,
 }
 
-/// Reads the file at `path` and all that it extends, the first of which counts.
+/// Reads the file of `request` and all that it extends, the first of which counts.
 ///
 /// # Errors
 /// A file that cannot be read or parsed, or files that extend each other in a circle.
-pub(super) fn read(path: &Path) -> Result<Vec<Text>, Vec<Diagnostic>> {
+pub(super) fn read(request: &ImportRequest) -> Result<Vec<Text>, Vec<Diagnostic>> {
     let mut texts: Vec<Text> = Vec::new();
-    let mut next = Some(path.to_owned());
+    let mut next = Some(request.path.clone());
     while let Some(path) = next {
         let text = text(&path)?;
-        next = below(&path, &text, &texts)?;
+        next = below(&ImportRequest { path: path.clone(), ..request.clone() }, &text, &texts)?;
         texts.push(Text { path, text });
     }
     Ok(texts)
@@ -58,7 +58,8 @@ fn text(path: &Path) -> Result<String, Vec<Diagnostic>> {
 }
 
 /// The file that this one extends.
-fn below(path: &Path, text: &str, above: &[Text]) -> Result<Option<PathBuf>, Vec<Diagnostic>> {
+fn below(request: &ImportRequest, text: &str, above: &[Text]) -> Result<Option<PathBuf>, Vec<Diagnostic>> {
+    let path = &*request.path;
     let report = Report::new(path, text);
     let (document, errors) = DeTable::parse_recoverable(text);
     if !errors.is_empty() {
@@ -82,7 +83,7 @@ fn below(path: &Path, text: &str, above: &[Text]) -> Result<Option<PathBuf>, Vec
             value.get_ref().type_str()
         )));
     };
-    let file = match ImportRequest::new(path).resolve(name) {
+    let file = match request.resolve(name) {
         Ok(file) => file,
         Err(error) => return refuse(error),
     };

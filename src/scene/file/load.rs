@@ -18,20 +18,23 @@ use crate::{
     Diagnostic, ImportRequest, Imported, Node, OutputSettings, Overrides, RenderSettings, Scene, Severity,
 };
 
-/// Reads a scene file, over the files that it extends, below changes from the command line. `import` turns each file it
-/// names into a scene; it is given the folder of the scene file as one more folder that may be read.
+/// Reads the scene file of `request`, over the files that it extends, below changes from the command line. `import` turns
+/// each file it names into a scene; it is given the folder of the scene file as one more folder that may be read.
 ///
 /// # Errors
 /// All errors that were found, in the order of the files, with the warnings among them.
 pub fn load(
-    path: &Path,
+    request: &ImportRequest,
     overrides: &Overrides,
     import: &dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic>,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
-    let texts = layers::read(path)?;
+    let texts = layers::read(request)?;
     let assets = Assets { files: texts.iter().map(|text| text.path.clone()).collect(), ..Assets::default() };
-    let mut sources = vec![overrides.source(path)];
+    let mut sources = vec![overrides.source(&request.path)];
     sources.extend(layers::sources(&texts));
+    for source in &mut sources {
+        source.request.allowed.clone_from(&request.allowed);
+    }
     assemble(sources, assets, import)
 }
 

@@ -1,7 +1,7 @@
 //! Broken files and exactly what is said about them.
 
 use super::wrong;
-use crate::Overrides;
+use crate::{ImportRequest, Overrides};
 
 #[test]
 fn messages() {
@@ -152,7 +152,7 @@ fn messages() {
         (
             "[[import]]\nfile = \"..\"\n",
             &[
-                "2:8: error: import[0].file: \"..\" lies outside the scene's folder\n  hint: move it there or allow its folder",
+                "2:8: error: import[0].file: \"..\" lies outside the scene's folder\n  hint: move it there, or allow its folder with --allow",
             ],
         ),
         // Materials.
@@ -205,10 +205,14 @@ fn not_text() {
     let folder = super::folder("", &[]);
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, b"[render]\n# \xff\n").unwrap();
-    let errors = super::load(&path, &Overrides::default(), &super::import).unwrap_err();
+    let errors = super::load(&ImportRequest::new(&path), &Overrides::default(), &super::import).unwrap_err();
     assert_eq!(errors[0].to_string(), format!("{}:2:3: error: is not text in UTF-8", path.display()));
-    let errors =
-        super::load(&folder.path().join("none.toml"), &Overrides::default(), &super::import).unwrap_err();
+    let errors = super::load(
+        &ImportRequest::new(folder.path().join("none.toml")),
+        &Overrides::default(),
+        &super::import,
+    )
+    .unwrap_err();
     assert!(errors[0].to_string().contains("none.toml: error: cannot be read"), "{}", errors[0]);
 }
 

@@ -3,14 +3,14 @@
 use std::cell::RefCell;
 
 use super::{super::Overrides, folder, import, load, wrong};
-use crate::{Choice, Moment};
+use crate::{Choice, ImportRequest, Moment};
 
 /// What the importer is asked for by an `[[import]]` with these keys.
 fn asked(keys: &str) -> Choice {
     let toml = format!("[[import]]\nfile = \"a.glb\"\n{keys}\n");
     let folder = folder(&toml, &["a.glb"]);
     let choice = RefCell::default();
-    load(&folder.path().join("scene.toml"), &Overrides::default(), &|request| {
+    load(&ImportRequest::new(folder.path().join("scene.toml")), &Overrides::default(), &|request| {
         choice.replace(request.choice.clone());
         import(request)
     })

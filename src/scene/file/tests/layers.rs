@@ -5,7 +5,7 @@ use std::fs;
 use glam::DVec3;
 
 use super::{folder, import};
-use crate::{LightKind, Overrides, Projection, SceneFile, file::load};
+use crate::{ImportRequest, LightKind, Overrides, Projection, SceneFile, file::load};
 
 const BASE: &str = r#"
 [[import]]
@@ -35,7 +35,11 @@ seed = 3
 fn over(toml: &str, changes: &[&str]) -> Result<SceneFile, Vec<String>> {
     let folder = folder(toml, &["a.glb", "b.glb", "sky.hdr"]);
     fs::write(folder.path().join("base.toml"), BASE).unwrap();
-    let found = load(&folder.path().join("scene.toml"), &Overrides::parse(changes).unwrap(), &import);
+    let found = load(
+        &ImportRequest::new(folder.path().join("scene.toml")),
+        &Overrides::parse(changes).unwrap(),
+        &import,
+    );
     let prefix = format!("{}/", folder.path().display());
     found.map_err(|errors| errors.iter().map(|error| error.to_string().replace(&prefix, "")).collect())
 }

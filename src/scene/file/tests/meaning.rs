@@ -6,8 +6,8 @@ use glam::{DMat3, DVec3, Vec3};
 
 use super::{super::placement::rotation, folder, import, read, right};
 use crate::{
-    AlphaMode, Channel, ColorSpace, Filter, ImageSource, LightKind, Node, OutputSettings, Overrides,
-    Projection, RenderSettings, SceneFile, Severity, Wrap,
+    AlphaMode, Channel, ColorSpace, Filter, ImageSource, ImportRequest, LightKind, Node, OutputSettings,
+    Overrides, Projection, RenderSettings, SceneFile, Severity, Wrap,
 };
 
 fn close(a: DVec3, b: DVec3) -> bool {
@@ -99,10 +99,14 @@ fn imports_are_placed() {
 #[test]
 fn imports_may_read_the_scene_folder() {
     let folder = folder("[[import]]\nfile = \"sub/a.glb\"\n", &["sub/a.glb", "textures/t.png"]);
-    let file = super::load(&folder.path().join("scene.toml"), &Overrides::default(), &|request| {
-        request.resolve("../textures/t.png")?;
-        import(request)
-    });
+    let file = super::load(
+        &ImportRequest::new(folder.path().join("scene.toml")),
+        &Overrides::default(),
+        &|request| {
+            request.resolve("../textures/t.png")?;
+            import(request)
+        },
+    );
     assert!(file.is_ok(), "{file:?}");
 }
 

@@ -59,7 +59,7 @@ fn import(request: &ImportRequest) -> Result<Imported, Diagnostic> {
 }
 
 fn read(folder: &Path) -> Result<SceneFile, Vec<Diagnostic>> {
-    load(&folder.join("scene.toml"), &Overrides::default(), &import)
+    load(&ImportRequest::new(folder.join("scene.toml")), &Overrides::default(), &import)
 }
 
 /// The scene file of this text, which must be right.

@@ -1,17 +1,17 @@
 //! Numbers and names as people read them.
 
 /// A name with control characters escaped.
-pub(super) fn plain(name: &str) -> String {
+pub(crate) fn plain(name: &str) -> String {
     name.escape_debug().to_string()
 }
 
 /// The same in quotes.
-pub(super) fn quoted(name: &str) -> String {
+pub(crate) fn quoted(name: &str) -> String {
     format!("\"{}\"", plain(name))
 }
 
 /// `1 mesh`, `2 vertices`, `12 345 triangles`.
-pub(super) fn many(count: usize, what: &str) -> String {
+pub(crate) fn many(count: usize, what: &str) -> String {
     let what = match (count, what) {
         (1, _) => what.to_owned(),
         (_, "mesh") => "meshes".to_owned(),
@@ -22,7 +22,7 @@ pub(super) fn many(count: usize, what: &str) -> String {
 }
 
 /// Digits in threes.
-pub(super) fn grouped(count: usize) -> String {
+pub(crate) fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let first = digits.len() % 3;
     let mut text = String::new();
@@ -36,19 +36,19 @@ pub(super) fn grouped(count: usize) -> String {
 }
 
 /// A number with four significant digits.
-pub(super) fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
     let size = rounded.abs();
     if size != 0.0 && !(1e-4..1e9).contains(&size) { format!("{rounded:e}") } else { rounded.to_string() }
 }
 
 /// Three numbers in brackets.
-pub(super) fn vector(values: &[f64; 3]) -> String {
+pub(crate) fn vector(values: &[f64; 3]) -> String {
     format!("({})", values.map(number).join(", "))
 }
 
 /// A size in binary units.
-pub(super) fn bytes(count: u64) -> String {
+pub(crate) fn bytes(count: u64) -> String {
     match count {
         0..1024 => format!("{count} B"),
         1024..1_048_576 => format!("{:.1} KiB", count as f64 / 1024.0),
