@@ -1,8 +1,10 @@
 //! Text into statements: encoding, line ends, continuation with `\`, comments.
 
-use std::{borrow::Cow, fs::File, io::Read, path::Path};
+use std::{borrow::Cow, path::Path};
 
-use ajar_scene::{Cause, Diagnostic};
+use ajar_scene::Diagnostic;
+
+use crate::files;
 
 /// One statement, with the line it starts on.
 pub(super) struct Line<'a> {
@@ -108,21 +110,7 @@ impl<'a> Iterator for Lines<'a> {
 /// Reads a text file of at most `limit` bytes. The flag tells that it was not UTF-8 and lost characters.
 pub(super) fn read(path: &Path, limit: u64) -> Result<(String, bool), Diagnostic> {
     let fail = |message: String| Diagnostic::error(message).in_file(path);
-    let unreadable = |e: std::io::Error| fail(format!("cannot be read: {e}"));
-    // Asked before opening: opening a named pipe would wait for its writer.
-    if !path.metadata().map_err(unreadable)?.is_file() {
-        return Err(fail("is not a file".to_owned()));
-    }
-    let mut bytes = Vec::new();
-    File::open(path)
-        .map_err(unreadable)?
-        .take(limit.saturating_add(1))
-        .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
-    if bytes.len() as u64 > limit {
-        let error = fail(format!("is larger than the memory limit of {limit} bytes"));
-        return Err(error.because(Cause::Resource));
-    }
+    let mut bytes = files::read(path, limit)?;
     if bytes.starts_with(b"\xFE\xFF") || bytes.starts_with(b"\xFF\xFE") {
         return Err(fail("is UTF-16 text".to_owned()).at(1, 1).hint("save it as UTF-8"));
     }

@@ -8,6 +8,9 @@ use serde::Deserialize;
 use super::process::End;
 use crate::{ajar, gltf, report::Report};
 
+/// Characters of a text that are shown.
+const SHOWN: usize = 1000;
+
 /// Lines without form that an error repeats.
 const LAST_LINES: usize = 5;
 
@@ -34,18 +37,22 @@ enum Line {
 }
 
 /// What the lines said.
-struct Said {
+struct Said<'a> {
     report: Report,
     files: Vec<PathBuf>,
     error: Option<Diagnostic>,
     /// Lines without form.
-    other: Vec<String>,
+    other: Vec<&'a str>,
 }
 
-impl Said {
-    fn new(messages: &[u8]) -> Self {
+impl<'a> Said<'a> {
+    fn new(messages: &'a str) -> Self {
         let mut said = Self { report: Report::default(), files: Vec::new(), error: None, other: Vec::new() };
-        for line in String::from_utf8_lossy(messages).lines().filter(|line| !line.trim().is_empty()) {
+        for line in messages.lines().filter(|line| !line.trim().is_empty()) {
+            if !line.starts_with('{') {
+                said.other.push(line);
+                continue;
+            }
             match serde_json::from_str(line) {
                 Ok(Line::File { file }) => said.files.push(file),
                 Ok(Line::Progress { .. }) => {}
@@ -53,11 +60,11 @@ impl Said {
                     severity: level,
                     cause,
                     loss,
-                    element: place,
-                    hint,
-                    ..Diagnostic::error(message)
+                    element: place.map(|place| printable(&place)),
+                    hint: hint.map(|hint| printable(&hint)),
+                    ..Diagnostic::error(printable(&message))
                 }),
-                Err(_) => said.other.push(line.to_owned()),
+                Err(_) => said.other.push(line),
             }
         }
         said
@@ -74,11 +81,13 @@ impl Said {
 
 /// The import that the program's end tells.
 pub(super) fn imported(name: &str, end: End, request: &ImportRequest) -> Result<Imported, Diagnostic> {
-    let mut said = Said::new(&end.messages);
+    let messages = String::from_utf8_lossy(&end.messages);
+    let mut said = Said::new(&messages);
     if end.status.success() || said.error.is_some() {
         return decoded(name, said, end.output, request);
     }
-    let last = said.other.split_off(said.other.len().saturating_sub(LAST_LINES)).join("\n    ");
+    let last = said.other.split_off(said.other.len().saturating_sub(LAST_LINES));
+    let last = last.into_iter().map(printable).collect::<Vec<_>>().join("\n    ");
     let error = Diagnostic::error(format!("{name} failed with {}", end.status)).in_file(&request.path);
     Err(if last.is_empty() { error } else { error.hint(format!("it said\n    {last}")) })
 }
@@ -93,12 +102,12 @@ pub fn answer(
     messages: &[u8],
     request: &ImportRequest,
 ) -> Result<Imported, Diagnostic> {
-    decoded(name, Said::new(messages), output, request)
+    decoded(name, Said::new(&String::from_utf8_lossy(messages)), output, request)
 }
 
 fn decoded(
     name: &str,
-    mut said: Said,
+    mut said: Said<'_>,
     output: Vec<u8>,
     request: &ImportRequest,
 ) -> Result<Imported, Diagnostic> {
@@ -106,7 +115,7 @@ fn decoded(
         return Err(error.in_file(&request.path));
     }
     for line in said.other {
-        said.report.add(Diagnostic::note(format!("{name} said: {line}")));
+        said.report.add(Diagnostic::note(format!("{name} said: {}", printable(line))));
     }
     let decoded = if gltf::is_container(&output) {
         gltf::decode(output, request)
@@ -122,4 +131,11 @@ fn decoded(
     let mut met = std::collections::HashSet::new();
     imported.files.retain(|file| met.insert(file.clone()));
     Ok(imported)
+}
+
+/// A text of the plug-in, fit for a terminal.
+fn printable(text: &str) -> String {
+    let shown = text.chars().take(SHOWN).map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c });
+    let dots = text.chars().nth(SHOWN).map(|_| '…');
+    shown.chain(dots).collect()
 }

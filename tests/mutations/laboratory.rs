@@ -11,8 +11,6 @@ use crate::seeds;
 
 /// Bytes that importers and textures may ask for, each.
 const LIMIT: u64 = 64 << 20;
-/// Bytes that all of it may take: what the house promises for hostile files.
-pub const MOST_BYTES: usize = 512 << 20;
 /// Width and height of the film.
 const SIZE: u32 = 4;
 /// Bytes of all messages about one file. More would bury what matters.
@@ -99,6 +97,7 @@ impl Laboratory {
                 size: Some([SIZE; 2]),
                 set: &[],
                 strict: false,
+                allow: &[],
                 memory_limit: LIMIT,
                 choice: &choice,
             };

@@ -27,6 +27,9 @@ use mutate::Mutator;
 #[global_allocator]
 static METER: meter::Meter = meter::Meter;
 
+/// Bytes that an input may take: what the house promises for hostile files.
+const MOST_BYTES: usize = 512 << 20;
+
 /// The meter counts all threads, so formats take turns.
 static TURN: Mutex<()> = Mutex::new(());
 
@@ -81,7 +84,7 @@ fn survives(target: Target) {
             .unwrap_or_else(|_| Err("it panics".into()));
         let (time, bytes) = (start.elapsed(), meter::most() - before);
         let found = found.and_then(|fate| {
-            let allowed = bytes <= laboratory::MOST_BYTES;
+            let allowed = bytes <= MOST_BYTES;
             if allowed { Ok(fate) } else { Err(format!("it takes {} MiB", bytes >> 20)) }
         });
         match found {
