@@ -4,8 +4,10 @@
 //! [`importers`].
 
 pub mod ajar;
+mod files;
 pub mod gltf;
 mod guard;
+mod json;
 pub mod obj;
 pub mod plugin;
 mod polygon;
@@ -13,11 +15,7 @@ pub mod python;
 mod report;
 pub mod usd;
 
-use std::{
-    fs::File,
-    io::{self, Read},
-    path::Path,
-};
+use std::path::Path;
 
 use ajar_scene::{Diagnostic, ImportRequest, Imported, Importer};
 
@@ -38,18 +36,11 @@ pub fn find(path: &Path) -> Result<&'static dyn Importer, Diagnostic> {
     if let Some(importer) = importers().iter().find(|i| i.extensions().contains(&extension.as_str())) {
         return Ok(*importer);
     }
-    let head = head(path).map_err(|e| Diagnostic::error(format!("cannot be read: {e}")).in_file(path))?;
+    let head = files::head(path, HEAD)?;
     if plugin::claimant(path, &head)?.is_some() {
         return Ok(&plugin::PlugIns);
     }
     importers().iter().find(|i| i.sniff(&head)).copied().ok_or_else(|| unknown(path))
-}
-
-/// The first bytes of a file.
-fn head(path: &Path) -> io::Result<Vec<u8>> {
-    let mut head = Vec::new();
-    File::open(path)?.take(HEAD).read_to_end(&mut head)?;
-    Ok(head)
 }
 
 fn unknown(path: &Path) -> Diagnostic {

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use ajar_scene::{
-    Arena, Diagnostic, Id, Image, ImageSource, ImportRequest, Imported, Material, Node, Scene, Texture,
+    Arena, Cause, Diagnostic, Id, Image, ImageSource, ImportRequest, Imported, Material, Node, Scene, Texture,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::{Map, Value, json};
 
 use super::{array::Binary, mesh};
+use crate::json::cost;
 
 /// Version of the JSON, in its key `ajar`.
 pub(super) const VERSION: u64 = 1;
@@ -24,8 +25,14 @@ struct ImageForm {
 }
 
 /// Reads JSON and binary chunk.
-pub(super) fn scene(json: &[u8], bytes: &[u8], request: &ImportRequest) -> Result<Imported, Diagnostic> {
-    let mut top: Map<String, Value> = serde_json::from_slice(json)
+pub(super) fn scene(text: &[u8], bytes: &[u8], request: &ImportRequest) -> Result<Imported, Diagnostic> {
+    let cost = cost(text);
+    if cost > request.memory_limit {
+        let message =
+            format!("the JSON takes about {cost} bytes, more than the limit of {}", request.memory_limit);
+        return Err(Diagnostic::error(message).because(Cause::Resource));
+    }
+    let mut top: Map<String, Value> = serde_json::from_slice(text)
         .map_err(|e| Diagnostic::error(format!("broken JSON: {e}")).at(e.line().max(1), e.column().max(1)))?;
     match top.remove("ajar") {
         Some(version) if version.as_u64() == Some(VERSION) => {}

@@ -8,9 +8,9 @@ mod form;
 mod mesh;
 mod write;
 
-use std::fs;
+use ajar_scene::{Diagnostic, Feature, ImportRequest, Imported, Importer};
 
-use ajar_scene::{Cause, Diagnostic, Feature, ImportRequest, Imported, Importer};
+use crate::files;
 
 pub use write::write;
 
@@ -47,13 +47,7 @@ impl Importer for Ajar {
     fn import(&self, request: &ImportRequest) -> Result<Imported, Diagnostic> {
         let within = || -> Result<Imported, Diagnostic> {
             request.refuse_variants()?;
-            let unreadable = |e| Diagnostic::error(format!("cannot be read: {e}"));
-            let size = fs::metadata(&request.path).map_err(unreadable)?.len();
-            if size > request.memory_limit {
-                return Err(Diagnostic::error(format!("{size} bytes are more than the memory limit"))
-                    .because(Cause::Resource));
-            }
-            let bytes = fs::read(&request.path).map_err(unreadable)?;
+            let bytes = files::read(&request.path, request.memory_limit)?;
             let mut imported = decode(&bytes, request)?;
             imported.files.insert(0, request.path.clone());
             Ok(imported)

@@ -7,8 +7,11 @@ use ajar_scene::Diagnostic;
 use gltf::json::Root;
 use serde_json::{Map, Value};
 
-use super::{container, extensions};
-use crate::report::Report;
+use super::{Context, container, extensions};
+use crate::{json::cost, report::Report};
+
+/// Values, the types made of them, and the values again where something moves.
+const COPIES: u64 = 3;
 
 /// A file taken apart.
 pub(super) struct Document {
@@ -23,8 +26,10 @@ pub(super) struct Document {
 ///
 /// # Errors
 /// No glTF 2, or an extension is required that is not supported.
-pub(super) fn parse(file: Vec<u8>, report: &mut Report) -> Result<Document, Diagnostic> {
-    let container = container::split(file, report)?;
+pub(super) fn parse(file: Vec<u8>, context: &mut Context) -> Result<Document, Diagnostic> {
+    let container = container::split(file, &mut context.report)?;
+    context.charge(cost(&container.json) * COPIES, "the JSON")?;
+    let report = &mut context.report;
     let mut json = json(&container)?;
     version(&json)?;
     extensions::check(&json, report)?;

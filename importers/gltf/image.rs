@@ -1,13 +1,12 @@
 //! Images: found and recognized, but left encoded.
 
-use std::{fs::File, io::Read, path::Path};
-
 use ajar_scene::{Diagnostic, Id, Image, ImageSource, Scene, Severity};
 
 use super::{Asset, Context, at, uri};
+use crate::files;
 
 /// Bytes that tell the format.
-const HEAD: usize = 12;
+const HEAD: u64 = 12;
 
 /// The images asked for so far, by their index in the file; `None` for those that cannot be had.
 #[derive(Default)]
@@ -65,7 +64,7 @@ fn source(
             Some(bytes) => bytes,
             None => {
                 let path = uri::file(uri, context, element)?;
-                recognize(&head(&path)?)?;
+                recognize(&files::head(&path, HEAD)?)?;
                 return Ok(ImageSource::File(path));
             }
         },
@@ -78,16 +77,6 @@ fn source(
     };
     recognize(&embedded)?;
     Ok(ImageSource::Embedded(embedded.into()))
-}
-
-fn head(path: &Path) -> Result<Vec<u8>, Diagnostic> {
-    let failed = |e: std::io::Error| Diagnostic::error(format!("it cannot be read: {e}"));
-    if !path.metadata().map_err(failed)?.is_file() {
-        return Err(Diagnostic::error("it is not a regular file"));
-    }
-    let mut head = Vec::new();
-    File::open(path).and_then(|file| file.take(HEAD as u64).read_to_end(&mut head)).map_err(failed)?;
-    Ok(head)
 }
 
 /// Refuses what no decoder of ours reads. The bytes decide, not the media type, which is often wrong.

@@ -167,7 +167,7 @@ fn convert(file: Vec<u8>, mut context: Context) -> Result<Imported, Diagnostic> 
 
 /// The document at the moment that is asked for, and its buffers.
 fn load(file: Vec<u8>, context: &mut Context) -> Result<Asset, Diagnostic> {
-    let document::Document { mut json, animations, binary } = document::parse(file, &mut context.report)?;
+    let document::Document { mut json, animations, binary } = document::parse(file, context)?;
     let moment = context.request.choice.seconds().filter(|_| !animations.is_empty());
     let Some(seconds) = moment else {
         if !animations.is_empty() {

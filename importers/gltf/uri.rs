@@ -1,6 +1,6 @@
 //! References to bytes: base64 in `data:` URIs (RFC 2397) and percent-encoded relative paths (RFC 3986).
 
-use std::{fs::File, io::Read, path::Path, path::PathBuf};
+use std::path::{Path, PathBuf};
 
 use ajar_scene::Diagnostic;
 use base64::{
@@ -9,6 +9,7 @@ use base64::{
 };
 
 use super::Context;
+use crate::files;
 
 /// Takes base64 with and without padding: both occur.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -53,16 +54,9 @@ pub(super) fn file(uri: &str, context: &mut Context, element: &str) -> Result<Pa
 
 /// Reads a regular file whole, counted before it is read.
 pub(super) fn read_file(path: &Path, context: &mut Context, element: &str) -> Result<Vec<u8>, Diagnostic> {
-    let failed =
-        |e: std::io::Error| Diagnostic::error(format!("cannot be read: {e}")).in_file(path).element(element);
-    let info = path.metadata().map_err(failed)?;
-    if !info.is_file() {
-        return Err(Diagnostic::error("is not a regular file").in_file(path).element(element));
-    }
-    context.charge(info.len(), element)?;
-    let mut bytes = Vec::new();
-    File::open(path).and_then(|file| file.take(info.len()).read_to_end(&mut bytes)).map_err(failed)?;
-    Ok(bytes)
+    let size = files::size(path).map_err(|e| e.element(element))?;
+    context.charge(size, element)?;
+    files::read(path, size).map_err(|e| e.element(element))
 }
 
 /// Percent-encoded bytes decoded; what is not such a code or not UTF-8 stays as it is.

@@ -1,8 +1,10 @@
 //! Text into statements: encoding, line ends, continuation with `\`, comments.
 
-use std::{borrow::Cow, fs::File, io::Read, path::Path};
+use std::{borrow::Cow, path::Path};
 
-use ajar_scene::{Cause, Diagnostic};
+use ajar_scene::Diagnostic;
+
+use crate::files;
 
 /// One statement, with the line it starts on.
 pub(super) struct Line<'a> {
@@ -109,21 +111,7 @@ impl<'a> Iterator for Lines<'a> {
 /// Latin-1, in which every byte is a character. The flag tells of the last.
 pub(super) fn read(path: &Path, limit: u64) -> Result<(String, bool), Diagnostic> {
     let fail = |message: String| Diagnostic::error(message).in_file(path);
-    let unreadable = |e: std::io::Error| fail(format!("cannot be read: {e}"));
-    // Asked before opening: opening a named pipe would wait for its writer.
-    if !path.metadata().map_err(unreadable)?.is_file() {
-        return Err(fail("is not a file".to_owned()));
-    }
-    let mut bytes = Vec::new();
-    File::open(path)
-        .map_err(unreadable)?
-        .take(limit.saturating_add(1))
-        .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
-    if bytes.len() as u64 > limit {
-        let error = fail(format!("is larger than the memory limit of {limit} bytes"));
-        return Err(error.because(Cause::Resource));
-    }
+    let mut bytes = files::read(path, limit)?;
     if let Some(order) = [u16::from_be_bytes as fn([u8; 2]) -> u16, u16::from_le_bytes]
         .into_iter()
         .find(|order| bytes.get(..2).is_some_and(|mark| order([mark[0], mark[1]]) == 0xFEFF))

@@ -15,7 +15,7 @@ use ajar_scene::{
 };
 use glam::{Affine2, Mat2, Vec2, Vec4};
 
-use super::{lines::quote, mtl::Definition};
+use super::mtl::Definition;
 use crate::report::Report;
 
 /// The options and the file name of one statement.
@@ -187,10 +187,7 @@ impl Textures<'_> {
         let path =
             found.as_ref().map_or_else(|_| looked_for(self.request, &beside), |path| Some(path.clone()));
         self.files.extend(path.filter(|path| !self.files.contains(path)));
-        found.and_then(|path| {
-            let file = path.is_file().then_some(path);
-            file.ok_or_else(|| Diagnostic::error(format!("{} is not a file", quote(&beside))))
-        })
+        found
     }
 
     /// Reports something about the material that is dropped.

@@ -12,7 +12,7 @@ use std::{env, process::Command, time::Duration};
 use ajar_scene::{Cause, Choice, Diagnostic, Feature, ImportRequest, Imported, Importer, Moment};
 
 use self::process::Program;
-use crate::head;
+use crate::{HEAD, files};
 
 /// Replaces [`SILENCE`].
 const TIMEOUT: &str = "AJAR_PLUGIN_TIMEOUT";
@@ -41,13 +41,13 @@ impl Importer for PlugIns {
     }
 
     fn import(&self, request: &ImportRequest) -> Result<Imported, Diagnostic> {
-        let unreadable = |e| Diagnostic::error(format!("cannot be read: {e}")).in_file(&request.path);
-        let plug_in = claimant(&request.path, &head(&request.path).map_err(unreadable)?)?
+        let plug_in = claimant(&request.path, &files::head(&request.path, HEAD)?)?
             .ok_or_else(|| Diagnostic::error("is claimed by no plug-in").in_file(&request.path))?;
         run(&plug_in.name(), Command::new(&plug_in.program), Vec::new(), request)
     }
 }
 
+pub use answer::answer;
 pub(crate) use find::claimant;
 
 /// Lets a plug-in import the file of `request`; `input` goes to its standard input.

@@ -4,19 +4,21 @@ use std::{
     fmt,
     io::{self, Read, Write},
     process::{Child, Command, ExitStatus, Stdio},
-    sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel},
+    sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
     thread,
     time::{Duration, Instant},
 };
 
 use ajar_scene::Cause;
 
-/// Bytes of messages that are kept.
-const MOST_MESSAGES: usize = 1 << 22;
+/// Bytes of messages after which a program is stopped.
+const MOST_MESSAGES: u64 = 16 << 20;
+/// Blocks that wait to be collected.
+const WAITING: usize = 16;
+/// Time between two looks at a program that has closed its streams.
+const LOOK: Duration = Duration::from_millis(2);
 /// Bytes that are read at once.
 const BLOCK: usize = 1 << 16;
-/// Between two looks whether it has ended.
-const POLL: Duration = Duration::from_millis(2);
 
 /// What is run, and its limits.
 pub(super) struct Program {
@@ -81,28 +83,29 @@ impl Program {
             // A program that does not want its input is no failure.
             thread::spawn(move || drop(pipe.write_all(&input)));
         }
-        let (send, events) = channel();
+        let (send, events) = sync_channel(WAITING);
         read(child.stdout.take(), Event::Output, &send);
         read(child.stderr.take(), Event::Message, &send);
-        let collected = self.collect(&events);
-        let ended = collected.and_then(|said| Ok((self.ended(&mut child)?, said)));
+        let ended = self.collect(&events).and_then(|(output, messages)| {
+            let status = self.wait(&mut child)?;
+            Ok(End { status, output, messages })
+        });
         if ended.is_err() {
             stop(&mut child);
         }
-        let (status, (output, messages)) = ended?;
-        Ok(End { status, output, messages })
+        ended
     }
 
-    /// How it ended, now that both streams are closed and nothing is left for it to do.
-    fn ended(&self, child: &mut Child) -> Result<ExitStatus, Failure> {
-        let closed = Instant::now();
-        loop {
-            match child.try_wait().map_err(Failure::Start)? {
-                Some(status) => return Ok(status),
-                None if closed.elapsed() > self.silence => return Err(Failure::Silence(self.silence)),
-                None => thread::sleep(POLL),
+    /// Waits for the end of a program that has closed its streams: little should be left for it to do.
+    fn wait(&self, child: &mut Child) -> Result<ExitStatus, Failure> {
+        let start = Instant::now();
+        while start.elapsed() < self.silence {
+            if let Some(status) = child.try_wait().map_err(Failure::Start)? {
+                return Ok(status);
             }
+            thread::sleep(LOOK);
         }
+        Err(Failure::Silence(self.silence))
     }
 
     fn collect(&self, events: &Receiver<Event>) -> Result<(Vec<u8>, Vec<u8>), Failure> {
@@ -117,7 +120,9 @@ impl Program {
                 }
                 Ok(Event::Message(block)) => {
                     messages.extend(block);
-                    messages.truncate(MOST_MESSAGES);
+                    if messages.len() as u64 > MOST_MESSAGES {
+                        return Err(Failure::Size(MOST_MESSAGES));
+                    }
                 }
                 Ok(Event::Closed) => open -= 1,
                 Err(RecvTimeoutError::Timeout) => return Err(Failure::Silence(self.silence)),
@@ -136,7 +141,7 @@ fn stop(child: &mut Child) {
 }
 
 /// Reads a stream to its end in a thread of its own.
-fn read(pipe: Option<impl Read + Send + 'static>, event: fn(Vec<u8>) -> Event, events: &Sender<Event>) {
+fn read(pipe: Option<impl Read + Send + 'static>, event: fn(Vec<u8>) -> Event, events: &SyncSender<Event>) {
     let events = events.clone();
     thread::spawn(move || {
         let mut block = vec![0; BLOCK];

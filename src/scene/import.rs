@@ -119,7 +119,8 @@ impl ImportRequest {
     /// Turns a reference inside the file (already percent-decoded) into a path that may be read.
     ///
     /// # Errors
-    /// A reference that leaves the allowed folders (also through symbolic links), is absolute, or does not exist.
+    /// A reference that leaves the allowed folders (also through symbolic links), is absolute, does not exist, or
+    /// is no regular file.
     pub fn resolve(&self, reference: &str) -> Result<PathBuf, Diagnostic> {
         let refuse = |why: &str| {
             Diagnostic::error(format!("\"{}\" {why}", reference.escape_debug())).in_file(&self.path)
@@ -136,6 +137,10 @@ impl ImportRequest {
         let real = found?;
         let inside = |folder: &Path| folder.canonicalize().is_ok_and(|folder| real.starts_with(folder));
         if inside(self.folder()) || self.allowed.iter().any(|folder| inside(folder)) {
+            // Opening a pipe or a device could wait forever.
+            if !real.is_file() {
+                return Err(refuse("is not a file"));
+            }
             self.looked.note(&real);
             Ok(real)
         } else {

@@ -44,12 +44,14 @@ pub enum Fate {
 /// A folder for hostile files, and what went wrong with them so far.
 pub struct Jail {
     folder: tempfile::TempDir,
+    /// Environment of the program, besides its own.
+    pub variables: Vec<(&'static str, String)>,
     escapes: Vec<String>,
 }
 
 impl Jail {
     pub fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap(), escapes: Vec::new() }
+        Self { folder: tempfile::tempdir().unwrap(), variables: Vec::new(), escapes: Vec::new() }
     }
 
     pub fn path(&self, name: &str) -> PathBuf {
@@ -95,6 +97,7 @@ impl Jail {
         command.args(["--memory-limit", &(MEMORY / 4).to_string()]).arg(path);
         // Every thread reserves address space for itself, so there should not be one for each core.
         command.env("RAYON_NUM_THREADS", "2").env("MALLOC_ARENA_MAX", "2");
+        command.envs(self.variables.iter().map(|(name, value)| (name, value)));
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(File::create(&log).unwrap());
         let mut child = command.spawn().unwrap();
         let start = Instant::now();

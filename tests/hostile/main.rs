@@ -3,10 +3,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test panics; a skipped one says so")]
 
+mod ajar;
 mod corpus;
 mod damaged;
 mod gltf;
 mod images;
 mod jail;
+#[cfg(unix)]
+mod links;
 mod obj;
+#[cfg(unix)]
+mod plug_in;
 mod scene_file;

@@ -156,7 +156,9 @@ impl<F: FnMut(&[u32]) -> u32> Cutter<'_, F> {
     fn is_leaf(&self, index: u32) -> bool {
         let node = &self.binary.nodes[index as usize];
         let cost = &self.costs[index as usize];
-        node.is_leaf() || self.leaves.cost(node.aabb().half_area(), cost.boxes) <= cost.places[0]
+        // The area of boxes beyond 10¹⁹ overflows: then all costs are infinite, and capacity alone decides.
+        let fits = cost.boxes as usize <= self.leaves.capacity;
+        node.is_leaf() || (fits && self.leaves.cost(node.aabb().half_area(), cost.boxes) <= cost.places[0])
     }
 
     /// The subtrees that fill `places` places below the inner node `index`.

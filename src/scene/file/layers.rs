@@ -13,6 +13,9 @@ use crate::{Diagnostic, ImportRequest};
 /// Most files that may extend each other.
 const MOST: usize = 16;
 
+/// Largest file.
+const MOST_BYTES: u64 = 16 << 20;
+
 /// The key that names the file below.
 pub(super) const EXTENDS: &str = "extends";
 
@@ -49,7 +52,16 @@ pub(super) fn sources(texts: &[Text]) -> Vec<Source<'_>> {
 
 fn text(path: &Path) -> Result<String, Vec<Diagnostic>> {
     let refuse = |message: String| vec![Diagnostic::error(message).in_file(path)];
-    let bytes = fs::read(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+    let unreadable = |e: std::io::Error| refuse(format!("cannot be read: {e}"));
+    let info = path.metadata().map_err(unreadable)?;
+    // Opening a pipe would wait for who writes to it.
+    if !info.is_file() {
+        return Err(refuse("is not a regular file".into()));
+    }
+    if info.len() > MOST_BYTES {
+        return Err(refuse(format!("{} bytes are more than the {MOST_BYTES} of any scene file", info.len())));
+    }
+    let bytes = fs::read(path).map_err(unreadable)?;
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let before = String::from_utf8_lossy(error.as_bytes().get(..valid).unwrap_or_default()).into_owned();

@@ -149,3 +149,12 @@ fn the_tree_does_not_depend_on_threads() {
     let (one, many) = (build(1), build(5));
     assert!(one.baked.has_same_tree(&many.baked));
 }
+
+#[test]
+fn coordinates_whose_areas_overflow_are_no_failure() {
+    let mut mesh = icosphere(3);
+    mesh.positions.iter_mut().for_each(|position| *position *= 1e30);
+    let geometry = placed(mesh, DAffine3::IDENTITY, false);
+    let hit = nearest(&geometry, &Ray::new(DVec3::Z * 3e30, DVec3::NEG_Z)).unwrap();
+    assert!((hit.t / 1e30 - 2.0).abs() < 0.01);
+}
