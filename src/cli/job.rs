@@ -1,7 +1,5 @@
 //! What to render and where to write it: the command line over the scene file over the defaults.
 
-use std::collections::BTreeMap;
-
 use ajar_integrators::{Integrator, Settings, Window, integrators, stop::StopRules};
 use ajar_output::{ToneMap, frame_path};
 use ajar_scene::{Cause, Diagnostic, OutputSettings, RenderSettings};

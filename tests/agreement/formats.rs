@@ -15,6 +15,20 @@ use crate::{LIMIT, blocks::Blocks, open};
 const PNG: &str =
     "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAIAAAD91JpzAAAAEklEQVR4nGP4z8DAAMIM/4EAAB/uBfsL2WiLAAAAAElFTkSuQmCC";
 
+/// A window before a dim sky, so that highlights have an edge.
+const LIGHTS: &str = r#"
+[[light]]
+type = "rect"
+position = [2, 3, 2]
+target = [0, 0, 0]
+width = 2
+height = 2
+radiance = 20
+[[light]]
+type = "environment"
+radiance = 0.2
+"#;
+
 /// One material in the words of each format; nothing where a format cannot say it.
 struct Look {
     gltf: Value,
@@ -164,7 +178,11 @@ fn pictures(look: &Look) -> Vec<(&'static str, Blocks)> {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("map.png"), BASE64_STANDARD.decode(PNG).unwrap()).unwrap();
-    let render = |file: &str, seed| Blocks::new(&open(&folder.join(file)), &PathTracer, seed, 16);
+    let render = |file: &str, seed| {
+        let scene = folder.join("scene.toml");
+        fs::write(&scene, format!("[[import]]\nfile = \"{file}\"\n{LIGHTS}")).unwrap();
+        Blocks::new(&open(&scene), &PathTracer, seed, 32)
+    };
     write_gltf(folder, &look.gltf);
     write_obj(folder, look.mtl);
     let mut found = vec![("glTF", render("a.gltf", 1)), ("OBJ", render("a.obj", 2))];

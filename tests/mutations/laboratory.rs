@@ -126,7 +126,7 @@ fn plug_in(path: &Path, input: &[u8], choice: Choice) -> Found {
     let output = output.strip_prefix(seeds::CUT).unwrap_or(output).to_vec();
     let request = ImportRequest { memory_limit: LIMIT, choice, ..ImportRequest::new(path) };
     let imported = ajar_importers::plugin::answer("toy", output, messages, &request).map_err(|d| vec![d])?;
-    let file = ajar_scene::load_asset(path, &Overrides::parse::<&str>(&[])?, imported)?;
+    let file = ajar_scene::load_asset(&request, &Overrides::parse::<&str>(&[])?, imported)?;
     let mut said = file.diagnostics;
     said.extend(session::about(path, file.scene.validate()));
     if said.iter().any(|d| d.severity == Severity::Error) {
@@ -145,7 +145,7 @@ fn rendered(scene: Scene) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     let (world, said) = session::prepare_world(scene, camera, [SIZE; 2], LIMIT).map_err(about)?;
     let window = Window { x0: 0, y0: 0, x1: SIZE, y1: SIZE };
     let settings =
-        Settings { seed: 1, max_depth: 5, samples_per_round: 1, window, mutations: Default::default() };
+        Settings { seed: 1, max_depth: 5, samples_per_round: 1, window, metropolis: Default::default() };
     let cancel = AtomicBool::new(false);
     for integrator in integrators().iter().filter(|it| ["path", "bdpt"].contains(&it.name())) {
         let film = Film::new(window.pixels(), 1.0);

@@ -139,6 +139,17 @@ impl LensSubpaths {
     }
 }
 
+/// The Dirac event that `u` picks by its chance, in the order of [`Mode::DIRAC`]; what the chances leave is smooth.
+fn choose(chances: [f64; 4], mut u: f64) -> Mode {
+    for (mode, chance) in Mode::DIRAC.into_iter().zip(chances) {
+        if u < chance {
+            return mode;
+        }
+        u -= chance;
+    }
+    Mode::Smooth
+}
+
 /// Follows mirrors and lenses as chance has it, up to a vertex that scatters smoothly.
 fn trace(space: &Space<'_>, raster: DVec2, rng: &mut Rng) -> EyeSubpath {
     let lens = rng.pair();
@@ -151,13 +162,7 @@ fn trace(space: &Space<'_>, raster: DVec2, rng: &mut Rng) -> EyeSubpath {
         made.rays += 1;
         let Some(mut vertex) = space.world.trace(origin, direction, walked.len() == 1, seed) else { break };
         let known = vertex.frame.to_local(-direction);
-        let [reflect, transmit] = vertex.bsdf.dirac_chances(Side::TowardLight, known);
-        let u = rng.f64();
-        vertex.mode = match u {
-            _ if u < reflect => Mode::DeltaReflect,
-            _ if u < reflect + transmit => Mode::DeltaTransmit,
-            _ => Mode::Smooth,
-        };
+        vertex.mode = choose(vertex.bsdf.dirac_chances(Side::TowardLight, known), rng.f64());
         if vertex.mode == Mode::Smooth {
             if vertex.bsdf.has_smooth() {
                 walked.push(vertex);

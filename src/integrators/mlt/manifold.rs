@@ -66,8 +66,8 @@ fn derivative(world: &World, chain: &[Vertex]) -> Option<DMat2> {
         };
         let known = here.frame.to_local(at.w_e);
         let eta = match here.mode {
-            Mode::DeltaTransmit => here.bsdf.delta(Side::TowardLight, known, here.mode)?.eta_scale.sqrt(),
             Mode::Smooth | Mode::DeltaReflect => 1.0,
+            refracts => here.bsdf.delta(Side::TowardLight, known, refracts)?.eta_scale.sqrt(),
         };
         let height = (at.w_l * eta + at.w_e).dot(here.frame.z);
         let tangents = [here.frame.x, here.frame.y];

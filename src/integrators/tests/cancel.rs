@@ -2,7 +2,7 @@
 
 mod common;
 
-use std::{collections::BTreeMap, sync::atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
 use ajar_integrators::{Context, Settings, Window, integrators};
 use ajar_render::{film::Film, math::Rgb};
@@ -22,7 +22,7 @@ fn nothing_is_rendered_once_it_is_cancelled() {
     let world = b.world(SIDE);
     let window = Window { x0: 0, y0: 0, x1: SIDE, y1: SIDE };
     let settings =
-        Settings { seed: 1, max_depth: 8, samples_per_round: 256, window, mutations: BTreeMap::new() };
+        Settings { seed: 1, max_depth: 8, samples_per_round: 256, window, metropolis: Default::default() };
     let cancel = AtomicBool::new(true);
     for integrator in integrators() {
         let rounds = integrator.prepare(Context { world: &world, settings: &settings, cancel: &cancel });

@@ -80,6 +80,12 @@ pub enum Mode {
     DeltaTransmitBlue,
 }
 
+impl Mode {
+    /// All but [`Mode::Smooth`].
+    pub const DIRAC: [Self; 4] =
+        [Self::DeltaReflect, Self::DeltaTransmit, Self::DeltaTransmitRed, Self::DeltaTransmitBlue];
+}
+
 /// Names of the lobes, as [`Bsdf::sample_lobe`] numbers them.
 pub mod lobe {
     /// Cosine lobe on the side of the known direction: diffuse and multiply scattered reflection, sheen.
@@ -274,13 +280,12 @@ impl Bsdf {
         }
     }
 
-    /// Probabilities of choosing perfect reflection and perfect transmission given `known`.
-    pub fn dirac_chances(&self, side: Side, known: DVec3) -> [f64; 2] {
+    /// Probabilities of choosing each Dirac event given `known`, in the order of [`Mode::DIRAC`].
+    pub fn dirac_chances(&self, side: Side, known: DVec3) -> [f64; 4] {
         if !self.has_delta() {
-            return [0.0; 2];
+            return [0.0; 4];
         }
-        [Mode::DeltaReflect, Mode::DeltaTransmit]
-            .map(|mode| self.delta(side, known, mode).map_or(0.0, |event| event.probability))
+        Mode::DIRAC.map(|mode| self.delta(side, known, mode).map_or(0.0, |event| event.probability))
     }
 
     /// Whether some lobe has a density.

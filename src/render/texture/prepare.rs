@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, path::PathBuf, sync::Arc};
 
-use ajar_scene::{Diagnostic, Id, Image, ImageSource, LightKind, Material, Scene};
+use ajar_scene::{Diagnostic, Id, Image, ImageSource, LightKind, Scene};
 use rayon::prelude::*;
 
 use super::{

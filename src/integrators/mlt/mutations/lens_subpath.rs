@@ -40,7 +40,7 @@ impl Mutation for LensSubpath {
         // The subpath ended because no Dirac event was chosen.
         let node = &y.nodes[aux.stem];
         let known = node.vertex.frame.to_local(node.edge.to_eye);
-        let [reflect, transmit] = node.vertex.bsdf.dirac_chances(Side::TowardLight, known);
-        density * (1.0 - reflect - transmit) / (y.nodes[aux.stem - 1].passed * y.scalar())
+        let chances = node.vertex.bsdf.dirac_chances(Side::TowardLight, known);
+        density * (1.0 - chances.iter().sum::<f64>()) / (y.nodes[aux.stem - 1].passed * y.scalar())
     }
 }

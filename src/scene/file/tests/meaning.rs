@@ -32,6 +32,7 @@ fn settings() {
     let file = right(
         "[render]\nintegrator = \"bdpt\"\nsize = [640, 480]\nspp = 0x10\nrounds = 7\ntime = \"1h30m\"\nnoise = \"2%\"\n\
          seed = 5\nmax_depth = 3\ncrop = [0, 0.5, 0.25, 1]\nmutations = { lens = 1, window = 0.5 }\n\
+         mutation_choice = \"equal\"\nchain_length = 99\nlens_subpaths = \"list\"\n\
          [output]\npath = \"a.exr\"\npng = \"b.png\"\ntone_map = \"aces\"\nexposure = -1\naov = [\"depth\"]\nfloat = true\n",
         &[],
     );
@@ -47,6 +48,9 @@ fn settings() {
         max_depth: Some(3),
         crop: Some([0.0, 0.5, 0.25, 1.0]),
         mutations: [("lens".into(), 1.0), ("window".into(), 0.5)].into(),
+        mutation_choice: Some("equal".into()),
+        chain_length: Some(99),
+        lens_subpaths: Some("list".into()),
     };
     let output = OutputSettings {
         path: Some("a.exr".into()),
