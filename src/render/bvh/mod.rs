@@ -1,18 +1,21 @@
 //! What rays meet: triangles, found through trees of boxes.
 //!
 //! Meshes that are placed once become triangles in world space under one tree. Meshes that are placed many times keep
-//! one tree of their own, and a top level finds the placements. Both trees are eight children wide; `obvhs` builds the
-//! binary trees that they are cut from. Traversal is in f32 around a centre near the detail of the scene and is
+//! one tree of their own, and a top level finds the placements. Both trees are eight children wide. Traversal is in f32 around a centre near the detail of the scene and is
 //! watertight (Woop, Benthin & Wald 2013); the hit is then computed again in f64.
 //!
 //! The same vertices that rays meet are what [`Geometry::vertices`] gives, so points on them are on the surface to the
 //! last digits of f64.
 
 mod bake;
+mod binary;
 mod blas;
+mod bounds;
 mod build;
+mod cut;
 mod lanes;
 mod offset;
+mod split;
 mod stack;
 #[cfg(test)]
 mod tests;
@@ -22,7 +25,8 @@ mod triangle;
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3, Vec3};
+use ajar_scene::Mesh;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use crate::ray::Ray;
@@ -31,15 +35,6 @@ use blas::{Blas, Candidate};
 use tlas::{Placed, Tlas};
 
 pub use offset::{Anchor, offset_origin, segment};
-
-/// Triangles of a mesh.
-#[derive(Clone, Debug, Default)]
-pub struct MeshGeometry {
-    /// Vertices in the mesh's space.
-    pub positions: Vec<Vec3>,
-    /// Three vertices each. Triangles with missing or infinite vertices or without area are never met.
-    pub triangles: Vec<[u32; 3]>,
-}
 
 /// One placement of a mesh.
 #[derive(Clone, Copy, Debug)]
@@ -97,12 +92,13 @@ enum Place {
 const BAKED_COPIES: usize = 50_000;
 
 impl Geometry {
-    /// Prepares `instances` of `meshes`.
-    pub fn build(meshes: &[Arc<MeshGeometry>], instances: &[InstanceGeometry]) -> Self {
+    /// Prepares `instances` of the positions and triangles of `meshes`. Triangles with missing or infinite vertices or
+    /// without area are never met.
+    pub fn build(meshes: &[&Mesh], instances: &[InstanceGeometry]) -> Self {
         Self::build_baking(meshes, instances, BAKED_COPIES)
     }
 
-    fn build_baking(meshes: &[Arc<MeshGeometry>], instances: &[InstanceGeometry], copies: usize) -> Self {
+    fn build_baking(meshes: &[&Mesh], instances: &[InstanceGeometry], copies: usize) -> Self {
         let mut uses = vec![0usize; meshes.len()];
         for instance in instances {
             if let Some(n) = uses.get_mut(instance.mesh) {
@@ -113,7 +109,7 @@ impl Geometry {
             |mesh: usize| (uses[mesh].saturating_sub(1)) * meshes[mesh].triangles.len() >= copies.max(1);
         let own: Vec<Option<Arc<Blas>>> = (0..meshes.len())
             .into_par_iter()
-            .map(|i| is_own(i).then(|| Arc::new(own_blas(&meshes[i]))))
+            .map(|i| is_own(i).then(|| Arc::new(own_blas(meshes[i]))))
             .collect();
 
         let mut baked = Baked::default();
@@ -131,7 +127,11 @@ impl Geometry {
                     });
                     Place::Own(placed.len() as u32 - 1)
                 }
-                None => Place::Baked(baked.add(number as u32, meshes.get(instance.mesh), instance.to_world)),
+                None => Place::Baked(baked.add(
+                    number as u32,
+                    meshes.get(instance.mesh).copied(),
+                    instance.to_world,
+                )),
             });
         }
         let (baked, tlas) = rayon::join(|| baked.build(), || Tlas::build(&placed));

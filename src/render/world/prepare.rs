@@ -1,7 +1,5 @@
 //! Scene → World: textures, tangents, geometry, emitters, camera.
 
-use std::sync::Arc;
-
 use ajar_scene::{
     Camera, Diagnostic, Id, Input, Light, LightKind, Material, Mesh, Scene, Severity, TextureInput,
 };
@@ -10,7 +8,7 @@ use rayon::prelude::*;
 
 use super::{Instance, World};
 use crate::{
-    bvh::{Geometry, InstanceGeometry, MeshGeometry},
+    bvh::{Geometry, InstanceGeometry},
     camera,
     environment::Environment,
     light::{DiracLight, Lights, TriangleLight, tessellate},
@@ -151,18 +149,7 @@ fn instances(scene: &Scene, default_material: Id<Material>) -> Vec<Instance> {
 }
 
 fn build_geometry(scene: &Scene, instances: &[Instance]) -> Geometry {
-    let mut used = vec![false; scene.meshes.len()];
-    instances.iter().for_each(|instance| used[instance.mesh.index()] = true);
-    let meshes: Vec<Arc<MeshGeometry>> = scene
-        .meshes
-        .iter()
-        .zip(used)
-        .map(|(mesh, used)| {
-            let geometry =
-                MeshGeometry { positions: mesh.positions.clone(), triangles: mesh.triangles.clone() };
-            Arc::new(if used { geometry } else { MeshGeometry::default() })
-        })
-        .collect();
+    let meshes: Vec<&Mesh> = scene.meshes.iter().collect();
     let placements: Vec<InstanceGeometry> = instances
         .iter()
         .map(|instance| InstanceGeometry { mesh: instance.mesh.index(), to_world: instance.to_world })
