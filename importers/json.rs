@@ -42,6 +42,10 @@ mod tests {
         assert_eq!(cost(b"[1,2,3]"), 7 + 3 * 64);
         assert_eq!(cost(br#"{"a":{}}"#), 8 + 2 * 720);
         assert_eq!(cost(br#"["{,\",{"]"#), 10 + 64);
-        assert_eq!(cost("[".repeat(10_000).as_bytes()), 10_000 + 129 * 64, "nothing is made of what is deeper");
+        assert_eq!(
+            cost("[".repeat(10_000).as_bytes()),
+            10_000 + 129 * 64,
+            "nothing is made of what is deeper"
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use ajar_render::{
     bsdf::{Mode, Side},
-    path::Vertex,
+    path::{Kind, Vertex},
     rng::Rng,
 };
 use glam::DVec3;
