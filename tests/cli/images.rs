@@ -131,12 +131,14 @@ fn quiet_is_quiet_and_a_dry_run_writes_nothing() {
     assert!(bench.has("leaf.exr"));
 }
 
-/// The lamp is inside the box.
+/// The lamp shines away from everything.
 #[test]
 fn darkness_is_told_and_marked() {
     let bench = Bench::new();
-    let dark = SCENE
-        .replace("\"directional\"\ndirection = [-1, -2, -1]\nilluminance = 10", "\"sphere\"\nradius = 0.5");
+    let lamp = "type = \"rect\"\nposition = [0, -5, 0]\ndirection = [0, -1, 0]";
+    let sun = "type = \"directional\"\ndirection = [-1, -2, -1]\nilluminance = 10";
+    let dark = SCENE.replace(sun, lamp);
+    assert_ne!(dark, SCENE);
     bench.write("kitchen/dark.toml", &dark);
     for integrator in ["path", "bdpt", "mlt", "ajar"] {
         let command =
