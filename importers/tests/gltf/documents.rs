@@ -136,7 +136,7 @@ fn missing_and_short_buffers_are_errors_if_they_are_used() {
             "bufferViews[0]",
             "beyond buffers[0] of 35 bytes",
         ),
-        (json!({"byteLength": 36, "uri": "."}), "buffers[0].uri", "is not a regular file"),
+        (json!({"byteLength": 36, "uri": "."}), "buffers[0].uri", "is not a file"),
     ] {
         let mut document = asset.json.clone();
         document["buffers"] = json!([buffer]);
@@ -163,7 +163,7 @@ fn the_memory_limit_holds() {
         with(text.len() as u64 - 1).unwrap_err().message.starts_with("needs more memory than the limit of ")
     );
     assert!(with(text.len() as u64 + 10).is_err());
-    assert!(with(text.len() as u64 + 1000).is_ok());
+    assert!(with(text.len() as u64 + 100_000).is_ok());
 }
 
 #[test]

@@ -42,7 +42,9 @@ fn the_memory_limit_holds() {
     let path = folder.path().join("main.obj");
     fs::write(&path, format!("v 0 0 0\nf{}\n", " 1".repeat(10_000))).unwrap();
     let request = |memory_limit| ImportRequest { memory_limit, ..ImportRequest::new(&path) };
-    assert!(Obj.import(&request(10_000)).unwrap_err().message.contains("larger than the memory limit"));
+    assert!(
+        Obj.import(&request(10_000)).unwrap_err().message.contains("bytes are more than the memory limit")
+    );
     assert!(Obj.import(&request(1_000_000)).unwrap_err().message.contains("more than the memory limit"));
     assert!(Obj.import(&request(10_000_000)).is_ok());
 }
