@@ -158,3 +158,18 @@ def test_place_and_amount_are_found(reference: Path, tmp_path: Path) -> None:
 def test_few_rounds_are_not_believed(reference: Path, tmp_path: Path) -> None:
     verdict = compare(file(seed=3, rounds=4).write(tmp_path / "new.exr"), reference)
     assert gates(verdict)["statistics"] is Status.SKIP
+
+
+def test_numbers_of_objects_are_equal_or_not(tmp_path: Path) -> None:
+    def numbered(name: str, index: int) -> Path:
+        spec = oiio.ImageSpec(16, 16, 4, oiio.FLOAT)
+        spec.channelnames, spec.channelformats = ("R", "G", "B", "id"), (oiio.FLOAT, oiio.FLOAT, oiio.FLOAT, oiio.UINT)
+        image = oiio.ImageBuf(spec)
+        image.set_pixels(spec.roi, np.full((16, 16, 4), [1.0, 1.0, 1.0, index / 2**32], np.float32))
+        assert image.write(str(tmp_path / name)), image.geterror()
+        return tmp_path / name
+
+    reference = numbered("a.exr", 5)
+    assert compare(numbered("b.exr", 5), reference).outcome is Outcome.PASS
+    verdict = compare(numbered("c.exr", 6), reference)
+    assert "channel id differs in 100 %" in verdict.text()

@@ -77,7 +77,10 @@ def layer_problems(new: Picture, reference: Picture, settings: Settings) -> list
         if name in colors or name.startswith("variance.") or name not in reference.channels:
             continue
         a, b = new.plane(name), reference.plane(name)
-        differing = np.abs(a - b) > 0.01 * np.maximum(np.maximum(np.abs(a), np.abs(b)), 0.01)
+        if new.types[name].startswith("uint"):  # Numbers of objects: near ones have nothing in common.
+            differing = a != b
+        else:
+            differing = np.abs(a - b) > 0.01 * np.maximum(np.maximum(np.abs(a), np.abs(b)), 0.01)
         fraction = float(differing.mean())
         if fraction > settings.layer_pixels:
             problems.append(
