@@ -22,7 +22,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "compare-proof.md"
 HEAD = """# What the comparison finds
 
 Made by `.venv/bin/python tools/proof` from a release build, on {date}. Renders have 48×32 pixels, 16 rounds
-and paths of up to 6 edges, references four times as many rounds.
+of 4 samples a pixel and paths of up to 6 edges, references four times as many rounds.
 """
 RULES = """
 ## Mutants that must fail

@@ -160,6 +160,30 @@ def test_few_rounds_are_not_believed(reference: Path, tmp_path: Path) -> None:
     assert gates(verdict)["statistics"] is Status.SKIP
 
 
+def test_edges_of_layers_may_be_sampled_anew(tmp_path: Path) -> None:
+    """Coverage of an edge by 16 points scatters; where it is flat, or gone, every difference counts."""
+    rng = np.random.default_rng(3)
+
+    def covered(name: str, spoil: Callable[[np.ndarray], None] = lambda alpha: None) -> Path:
+        image = file(seed=1)
+        alpha = image.pixels[..., 3]
+        alpha[:, 48:] = 0
+        alpha[:, 48] = rng.binomial(16, 0.5, 72) / 16
+        alpha[20] = rng.binomial(16, 0.9, 96) / 16
+        spoil(alpha)
+        return image.write(tmp_path / name)
+
+    reference = covered("reference.exr")
+    assert compare(covered("sampled.exr"), reference).outcome is Outcome.PASS
+    spoiled = {
+        "thinner.exr": lambda alpha: alpha.__setitem__((slice(40, 60), slice(0, 40)), 0.97),
+        "gone.exr": lambda alpha: alpha.__setitem__((slice(40, 60), slice(40, 60)), 0),
+        "moved.exr": lambda alpha: alpha.__setitem__((slice(None), slice(48, 51)), 1),
+    }
+    for name, spoil in spoiled.items():
+        assert "channel A differs" in compare(covered(name, spoil), reference).text(), name
+
+
 def test_numbers_of_objects_are_equal_or_not(tmp_path: Path) -> None:
     def numbered(name: str, index: int) -> Path:
         spec = oiio.ImageSpec(16, 16, 4, oiio.FLOAT)
