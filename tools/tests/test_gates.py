@@ -184,16 +184,19 @@ def test_edges_of_layers_may_be_sampled_anew(tmp_path: Path) -> None:
         assert "channel A differs" in compare(covered(name, spoil), reference).text(), name
 
 
-def test_numbers_of_objects_are_equal_or_not(tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", [oiio.FLOAT, oiio.UINT])
+def test_numbers_of_objects_are_equal_or_not(kind: oiio.TypeDesc, tmp_path: Path) -> None:
     def numbered(name: str, index: int) -> Path:
         spec = oiio.ImageSpec(16, 16, 4, oiio.FLOAT)
-        spec.channelnames, spec.channelformats = ("R", "G", "B", "id"), (oiio.FLOAT, oiio.FLOAT, oiio.FLOAT, oiio.UINT)
+        spec.channelnames, spec.channelformats = ("R", "G", "B", "objectId"), (oiio.FLOAT, oiio.FLOAT, oiio.FLOAT, kind)
         image = oiio.ImageBuf(spec)
-        image.set_pixels(spec.roi, np.full((16, 16, 4), [1.0, 1.0, 1.0, index / 2**32], np.float32))
+        # Integers are fractions of the largest one to OpenImageIO.
+        value = index if kind == oiio.FLOAT else index / 2**32
+        image.set_pixels(spec.roi, np.full((16, 16, 4), [1.0, 1.0, 1.0, value], np.float32))
         assert image.write(str(tmp_path / name)), image.geterror()
         return tmp_path / name
 
-    reference = numbered("a.exr", 5)
-    assert compare(numbered("b.exr", 5), reference).outcome is Outcome.PASS
-    verdict = compare(numbered("c.exr", 6), reference)
-    assert "channel id differs in 100 %" in verdict.text()
+    reference = numbered("a.exr", 500)
+    assert compare(numbered("b.exr", 500), reference).outcome is Outcome.PASS
+    verdict = compare(numbered("c.exr", 501), reference)
+    assert "channel objectId differs in 100 %" in verdict.text()

@@ -26,7 +26,12 @@ def layer_problems(new: Picture, reference: Picture, settings: Settings) -> list
     for name in new.channels:
         if name in colors or name.startswith("variance.") or name not in reference.channels:
             continue
-        fraction = differing(new.plane(name), reference.plane(name), new.types[name], settings.layer_pixels)
+        planes = new.plane(name), reference.plane(name)
+        # Numbers of objects: near ones have nothing in common.
+        if new.types[name].startswith("uint") or all(map(whole, planes)):
+            fraction = float(np.not_equal(*planes).mean())
+        else:
+            fraction = differing(*planes, settings.layer_pixels)
         if fraction > settings.layer_pixels:
             problems.append(
                 f"channel {name} differs in {100 * fraction:.3g} % of the pixels, {100 * settings.layer_pixels:g} % may"
@@ -34,15 +39,18 @@ def layer_problems(new: Picture, reference: Picture, settings: Settings) -> list
     return problems
 
 
-def differing(a: np.ndarray, b: np.ndarray, kind: str, enough: float) -> float:
+def differing(a: np.ndarray, b: np.ndarray, enough: float) -> float:
     """The fraction of pixels that differ; where it is less than `enough`, at most that."""
-    if kind.startswith("uint"):  # Numbers of objects: near ones have nothing in common.
-        return float((a != b).mean())
     tolerance = TOLERANCE * np.maximum(np.maximum(np.abs(a), np.abs(b)), LEAST)
     far = np.abs(a - b) > tolerance
     if far.mean() > enough:
         far &= beyond_neighbours(a, b, tolerance) | beyond_neighbours(b, a, tolerance)
     return float(far.mean())
+
+
+def whole(plane: np.ndarray) -> bool:
+    """Whether all values are whole numbers."""
+    return np.array_equal(plane, np.rint(plane))
 
 
 def beyond_neighbours(a: np.ndarray, b: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
