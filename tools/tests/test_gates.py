@@ -200,3 +200,16 @@ def test_numbers_of_objects_are_equal_or_not(kind: oiio.TypeDesc, tmp_path: Path
     assert compare(numbered("b.exr", 500), reference).outcome is Outcome.PASS
     verdict = compare(numbered("c.exr", 501), reference)
     assert "channel objectId differs in 100 %" in verdict.text()
+
+
+def test_a_short_render_that_missed_light_is_judged_by_the_noise_of_the_long_one(
+    reference: Path, tmp_path: Path
+) -> None:
+    short = file(seed=3)
+    short.pixels[40:48, 16:24, :3] *= 0.97
+    short.variances[8][5, 2] *= 1e-4
+    new, right = read(short.write(tmp_path / "new.exr")), read(reference)
+    new.attributes["ajar:mutationsPerSample"] = 3.0
+    assert statistical.check(new, right, Settings()).status is Status.PASS
+    new.attributes["ajar:integrator"] = "bdpt"
+    assert statistical.check(new, right, Settings()).status is Status.FAIL
