@@ -19,6 +19,7 @@ PAGE = """<!doctype html><meta charset="utf-8"><meta name="viewport" content="wi
 body {{ font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 60rem; padding: 0 1rem; color: #222 }}
 table {{ border-collapse: collapse; width: 100% }}
 td, th {{ padding: .4rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd }}
+img {{ max-width: 100%; min-height: 5rem; margin-top: .4rem; image-rendering: pixelated }}
 .pass {{ color: #176b2c }} .fail, .cannot {{ color: #b3261e; font-weight: 600 }}
 </style>
 <h1>{title}</h1><p>{lead}</p>
@@ -54,13 +55,14 @@ class Artifacts:
     def keep(self, name: str, verdict: Verdict, settings: Settings, command: str, always: bool = False) -> Path:
         """Stores a verdict; where images differ, or always, a report too. Returns the case's folder."""
         folder = self.case(name)
-        report = ""
+        report = strip = ""
         if verdict.outcome is Outcome.FAIL or (always and verdict.outcome is not Outcome.CANNOT):
-            from ajar_tools.report import write_report
+            from ajar_tools.report import write_report, write_strip
 
             report = "report.html"
             write_report(folder / report, verdict, settings, command)
-        data = verdict.as_dict() | {"case": name, "report": report, "command": command}
+            strip = "strip.png" if write_strip(folder / "strip.png", verdict) else ""
+        data = verdict.as_dict() | {"case": name, "report": report, "strip": strip, "command": command}
         (folder / "verdict.json").write_text(json.dumps(data, indent=1), "utf-8")
         return folder
 
@@ -79,7 +81,10 @@ class Artifacts:
 def row(verdict: dict[str, Any]) -> str:
     """A case in the table."""
     name = html.escape(verdict["case"])
+    picture = ""
+    if verdict["strip"]:
+        picture = f'<br><img src="{name}/{verdict["strip"]}" alt="reference, new image and difference">'
     if verdict["report"]:
-        name = f'<a href="{name}/{verdict["report"]}">{name}</a>'
+        name, picture = (f'<a href="{name}/{verdict["report"]}">{text}</a>' for text in (name, picture))
     outcome = verdict["outcome"]
-    return f'<tr><td>{name}<td class="{outcome}">{outcome}<td>{html.escape(verdict["headline"])}</tr>'
+    return f'<tr><td>{name}<td class="{outcome}">{outcome}<td>{html.escape(verdict["headline"])}{picture}</tr>'

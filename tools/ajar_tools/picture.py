@@ -139,6 +139,9 @@ def check_spec(path: Path, source: oiio.ImageInput, spec: oiio.ImageSpec, most_s
     if int(spec.getattribute("oiio:subimages") or 1) > 1 or source.seek_subimage(1, 0):
         raise CannotCompareError(f"{path} has several parts; only single-part images can be compared")
     source.seek_subimage(0, 0)
+    integers = [name for i, name in enumerate(spec.channelnames) if str(spec.channelformat(i)).startswith("uint")]
+    if colors := [name for name in ("R", "G", "B", "Y") if name in integers]:
+        raise CannotCompareError(f"{path} has whole numbers in channel {colors[0]}, where light is a half or a float")
     if spec.depth > 1:
         raise CannotCompareError(f"{path} is a volume; only flat images can be compared")
     samples = spec.width * spec.height * spec.nchannels

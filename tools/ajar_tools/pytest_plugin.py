@@ -107,9 +107,12 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
     """Where to look; on GitHub a line that shows at the case."""
     folder = artifacts_of(config)
     update = config.getoption("--ajar-update")
-    title, lead = ("New references", "Old and new side by side: look at each before you commit it.")
+    title, lead = ("New references", "Old, new and their difference: look at each before you commit it.")
     if not update:
-        title, lead = ("Image regressions", "Reports exist for pictures that differ.")
+        title, lead = (
+            "Image regressions",
+            "Pictures that differ: reference, new image, difference; red is brighter, blue darker.",
+        )
     page = folder.write_index(title, lead) if folder.folder.is_dir() else None
     if page:
         terminalreporter.write_line(f"ajar: {'review the new references' if update else 'results'} in {page}")

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from ajar_tools import read
 
 SCENE = Path(__file__).parents[2] / "scenes" / "cornell" / "scene.toml"
 HALF_EXTENT = 4.8 * math.tan(math.radians(29.6) / 2)
@@ -42,13 +43,28 @@ def transformed(point: tuple[float, float, float], spec: oiio.ImageSpec, name: s
     return image[:3] / image[3]
 
 
-def test_oiiotool_reads_it_and_finds_every_pixel_finite(full_frame: Path) -> None:
+LAYERS = "albedo,normal,geometric_normal,depth,position,uv,material_id,object_id,variance"
+KINDS = {
+    "all layers": ["--aov", LAYERS],
+    "floats": ["--aov", LAYERS, "--float"],
+    "crop": ["--crop", "0.25,0.75,0.5,1", "--aov", LAYERS],
+    "one round": ["--rounds", "1"],
+    "bdpt": ["--integrator", "bdpt"],
+    "mlt": ["--integrator", "mlt"],
+    "ajar": ["--integrator", "ajar"],
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_oiiotool_reads_every_kind_and_finds_every_pixel_finite(kind: str, tmp_path: Path) -> None:
     tool = Path(sys.executable).with_name("oiiotool")
-    command = [tool, "--info", "-v", "--stats", full_frame]
-    report = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
-    counts = {name: set(line.split()[2:]) for line in report.splitlines() for name in [line.strip()[6:14]]}
+    command = [tool, "--info", "-v", "--stats", render(tmp_path / "out.exr", *KINDS[kind])]
+    done = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60)
+    assert done.stderr == ""
+    counts = {name: set(line.split()[2:]) for line in done.stdout.splitlines() for name in [line.strip()[6:14]]}
     assert counts["NanCount"] == {"0"}
     assert counts["InfCount"] == {"0"}
+    read(tmp_path / "out.exr")
 
 
 def test_beauty_comes_first_then_named_layers(spec: oiio.ImageSpec) -> None:

@@ -158,3 +158,58 @@ def test_place_and_amount_are_found(reference: Path, tmp_path: Path) -> None:
 def test_few_rounds_are_not_believed(reference: Path, tmp_path: Path) -> None:
     verdict = compare(file(seed=3, rounds=4).write(tmp_path / "new.exr"), reference)
     assert gates(verdict)["statistics"] is Status.SKIP
+
+
+def test_edges_of_layers_may_be_sampled_anew(tmp_path: Path) -> None:
+    """Coverage of an edge by 16 points scatters; where it is flat, or gone, every difference counts."""
+    rng = np.random.default_rng(3)
+
+    def covered(name: str, spoil: Callable[[np.ndarray], None] = lambda alpha: None) -> Path:
+        image = file(seed=1)
+        alpha = image.pixels[..., 3]
+        alpha[:, 48:] = 0
+        alpha[:, 48] = rng.binomial(16, 0.5, 72) / 16
+        alpha[20] = rng.binomial(16, 0.9, 96) / 16
+        spoil(alpha)
+        return image.write(tmp_path / name)
+
+    reference = covered("reference.exr")
+    assert compare(covered("sampled.exr"), reference).outcome is Outcome.PASS
+    spoiled = {
+        "thinner.exr": lambda alpha: alpha.__setitem__((slice(40, 60), slice(0, 40)), 0.97),
+        "gone.exr": lambda alpha: alpha.__setitem__((slice(40, 60), slice(40, 60)), 0),
+        "moved.exr": lambda alpha: alpha.__setitem__((slice(None), slice(48, 51)), 1),
+    }
+    for name, spoil in spoiled.items():
+        assert "channel A differs" in compare(covered(name, spoil), reference).text(), name
+
+
+@pytest.mark.parametrize("kind", [oiio.FLOAT, oiio.UINT])
+def test_numbers_of_objects_are_equal_or_not(kind: oiio.TypeDesc, tmp_path: Path) -> None:
+    def numbered(name: str, index: int) -> Path:
+        spec = oiio.ImageSpec(16, 16, 4, oiio.FLOAT)
+        spec.channelnames, spec.channelformats = ("R", "G", "B", "objectId"), (oiio.FLOAT, oiio.FLOAT, oiio.FLOAT, kind)
+        image = oiio.ImageBuf(spec)
+        # Integers are fractions of the largest one to OpenImageIO.
+        value = index if kind == oiio.FLOAT else index / 2**32
+        image.set_pixels(spec.roi, np.full((16, 16, 4), [1.0, 1.0, 1.0, value], np.float32))
+        assert image.write(str(tmp_path / name)), image.geterror()
+        return tmp_path / name
+
+    reference = numbered("a.exr", 500)
+    assert compare(numbered("b.exr", 500), reference).outcome is Outcome.PASS
+    verdict = compare(numbered("c.exr", 501), reference)
+    assert "channel objectId differs in 100 %" in verdict.text()
+
+
+def test_a_short_render_that_missed_light_is_judged_by_the_noise_of_the_long_one(
+    reference: Path, tmp_path: Path
+) -> None:
+    short = file(seed=3)
+    short.pixels[40:48, 16:24, :3] *= 0.97
+    short.variances[8][5, 2] *= 1e-4
+    new, right = read(short.write(tmp_path / "new.exr")), read(reference)
+    new.attributes["ajar:mutationsPerSample"] = 3.0
+    assert statistical.check(new, right, Settings()).status is Status.PASS
+    new.attributes["ajar:integrator"] = "bdpt"
+    assert statistical.check(new, right, Settings()).status is Status.FAIL

@@ -79,6 +79,17 @@ def test_no_colours(good: Path, tmp_path: Path) -> None:
         _ = read(write(tmp_path / "z.exr", spec)).color
 
 
+def test_colours_of_whole_numbers(good: Path, tmp_path: Path) -> None:
+    assert "whole numbers" in refused(write(tmp_path / "a.exr", oiio.ImageSpec(96, 72, 4, oiio.UINT)), good)
+
+
+def test_a_folder_that_cannot_be_written(good: Path, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "ajar_tools", "compare", good, good, "--html", tmp_path / "no/folder/report.html"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2
+    assert "cannot be written" in done.stderr
+
+
 def test_several_parts(good: Path, tmp_path: Path) -> None:
     path, spec = tmp_path / "parts.exr", oiio.ImageSpec(8, 8, 3, oiio.FLOAT)
     out = oiio.ImageOutput.create(str(path))

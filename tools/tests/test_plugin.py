@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 from xml.etree import ElementTree
 
+import OpenImageIO as oiio
 import pytest
 from synthetic import file
 
@@ -82,6 +83,13 @@ def test_changed_picture_fails_with_words_report_and_junit(project: pytest.Pytes
     assert "DIFFERENT PICTURE" in str(failure.text)
     index = (project.path / "ajar-artifacts" / "index.html").read_text()
     assert 'href="door/report.html"' in index
+    assert 'src="door/strip.png"' in index
+    # Reference, new image, difference, with white between.
+    strip = oiio.ImageBuf(str(project.path / "ajar-artifacts/door/strip.png")).get_pixels(oiio.FLOAT)
+    width = (strip.shape[1] - 8) // 3
+    reference, new, difference = (strip[:, start : start + width] for start in (0, width + 4, 2 * width + 8))
+    assert new.mean() > reference.mean()
+    assert difference[..., 0].mean() > difference[..., 2].mean()
 
 
 def test_update_keeps_old_and_new_side_by_side(project: pytest.Pytester) -> None:

@@ -1,16 +1,16 @@
 """The report in a real browser: it draws what it says, without errors and without the network."""
 
-import shutil
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import pytest
 from ajar_tools import Settings, compare
 from ajar_tools.report import write_report
+from browser import NoBrowserError, started
 from synthetic import file
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 # The sum of all colours on the canvas.
 BRIGHTNESS = """() => {
     const c = document.getElementById("canvas");
@@ -30,21 +30,29 @@ def report(folder: Path, name: str = "new.exr") -> Path:
 
 
 @pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    if CHROMIUM is None:
-        pytest.skip("there is no chromium (Debian: apt-get install chromium)")
-    sync_api = pytest.importorskip("playwright.sync_api")
-    path = report(tmp_path_factory.mktemp("report"))
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1280, "height": 900}, offline=True)
-        page.problems = []
-        page.on("pageerror", lambda error: page.problems.append(str(error)))
-        page.on("request", lambda request: request.url.startswith("http") and page.problems.append(request.url))
-        page.goto(path.as_uri())
-        page.wait_for_selector("body[data-ready=yes]", timeout=60_000)
-        yield page
-        browser.close()
+def browser() -> Iterator[Any]:
+    with ExitStack() as stack:
+        try:
+            browser = stack.enter_context(started())
+        except NoBrowserError as error:
+            pytest.skip(str(error))
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def page(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    return opened(browser, report(tmp_path_factory.mktemp("report")))
+
+
+def opened(browser: Any, path: Path) -> Any:
+    """The page, once it has drawn; what goes wrong on it is collected in `problems`."""
+    page = browser.new_page(viewport={"width": 1280, "height": 900}, offline=True)
+    page.problems = []
+    page.on("pageerror", lambda error: page.problems.append(str(error)))
+    page.on("request", lambda request: request.url.startswith("http") and page.problems.append(request.url))
+    page.goto(path.as_uri())
+    page.wait_for_selector("body[data-ready=yes]", timeout=60_000)
+    return page
 
 
 def shown(page: Any) -> str:

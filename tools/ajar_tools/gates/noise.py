@@ -21,8 +21,8 @@ def unusable(picture: Picture, statistics: BlockStatistics | None, settings: Set
     return ""
 
 
-def incomparable(new: Picture, reference: Picture) -> str:
-    """Why the noise of two renders has no reason to be alike; empty if it has."""
+def other_rounds(new: Picture, reference: Picture) -> str:
+    """Why rounds of two renders have nothing in common; empty if they are of one kind."""
     for name, what in (("ajar:integrator", "integrators"), ("ajar:sceneHash", "scenes")):
         a, b = new.attributes.get(name), reference.attributes.get(name)
         if a != b:
@@ -30,7 +30,14 @@ def incomparable(new: Picture, reference: Picture) -> str:
     samples = [samples_per_round(picture) for picture in (new, reference)]
     if samples[0] != samples[1]:
         return f"rounds of {samples[0]:.4g} and {samples[1]:.4g} samples a pixel have different noise"
-    # `ajar` finds out by itself how many pay.
+    return ""
+
+
+def incomparable(new: Picture, reference: Picture) -> str:
+    """Why the noise of two renders has no reason to be equal; empty if it has."""
+    if reason := other_rounds(new, reference):
+        return reason
+    # `ajar` finds out by itself how many pay, by the seed.
     mutations = [float(picture.attributes.get("ajar:mutationsPerSample", 0)) for picture in (new, reference)]
     if not math.isclose(*mutations, rel_tol=SAME_PLAN):
         return f"{mutations[0]:.3g} and {mutations[1]:.3g} mutations a sample have different noise"

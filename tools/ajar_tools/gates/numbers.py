@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from ajar_tools.gates.layers import layer_problems
 from ajar_tools.picture import Picture
 from ajar_tools.settings import Settings
 from ajar_tools.statistics import over_channels
@@ -67,20 +68,3 @@ def max_pixel(new: Picture, reference: Picture) -> tuple[int, int]:
     worst = over_channels(np.maximum, np.abs(new.color - reference.color))
     row, column = np.unravel_index(int(worst.argmax()), worst.shape)
     return new.data_window.x + int(column), new.data_window.y + int(row)
-
-
-def layer_problems(new: Picture, reference: Picture, settings: Settings) -> list[str]:
-    """Layers besides colour and variance hold first hits, without noise: few pixels may differ, at edges."""
-    colors = set(new.color_channels)
-    problems = []
-    for name in new.channels:
-        if name in colors or name.startswith("variance.") or name not in reference.channels:
-            continue
-        a, b = new.plane(name), reference.plane(name)
-        differing = np.abs(a - b) > 0.01 * np.maximum(np.maximum(np.abs(a), np.abs(b)), 0.01)
-        fraction = float(differing.mean())
-        if fraction > settings.layer_pixels:
-            problems.append(
-                f"channel {name} differs in {100 * fraction:.3g} % of the pixels, {100 * settings.layer_pixels:g} % may"
-            )
-    return problems

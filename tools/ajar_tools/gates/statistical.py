@@ -13,7 +13,7 @@ from statistics import NormalDist
 
 import numpy as np
 
-from ajar_tools.gates.noise import incomparable, unusable
+from ajar_tools.gates.noise import other_rounds, unusable
 from ajar_tools.picture import Picture
 from ajar_tools.settings import Settings
 from ajar_tools.statistics import SIDES, WHOLE, BlockStatistics, block_means
@@ -78,8 +78,8 @@ def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
 class Level:
     """Differences of block means of one side in standard errors: `t`, with degrees of `freedom`.
 
-    A short render that missed rare bright paths is too dark and knows little of its noise. Where the other one has the
-    same noise, it knows; then the larger counts of the standard errors of Welch and of Student.
+    A short render that missed rare bright paths is too dark and knows little of its noise. Where the other one is made
+    of rounds of the same kind, it knows; then the larger counts of the standard errors of Welch and of Student.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class Level:
         self.side = side
         a, b = block_means(new.color, side), block_means(reference.color, side)
         variance, self.freedom = welch(ours, theirs, side)
-        if not incomparable(new, reference):
+        if not other_rounds(new, reference):
             pooled, freedom = student(ours, theirs, side)
             self.freedom = np.where(pooled > variance, freedom, self.freedom)
             variance = np.maximum(pooled, variance)

@@ -16,6 +16,7 @@ from ajar_tools.gates.flip import flip_map, shrunk
 from ajar_tools.gates.statistical import Level
 from ajar_tools.picture import Picture
 from ajar_tools.report.encode import data_uri, shared_exponent
+from ajar_tools.report.strip import strip
 from ajar_tools.settings import Settings
 from ajar_tools.verdict import Verdict
 
@@ -42,7 +43,7 @@ ABOUT = {
 def write_report(path: Path, verdict: Verdict, settings: Settings, command: str) -> None:
     """Writes the page; without pictures where they cannot be shown side by side."""
     data: dict[str, Any] = {"verdict": verdict.as_dict(), "command": command}
-    if verdict.pictures and all(np.isfinite(p.color).all() for p in verdict.pictures):
+    if can_be_shown(verdict):
         data |= images(verdict, settings)
     page = resource("page.html")
     # A tag inside a text must not end the script.
@@ -52,6 +53,21 @@ def write_report(path: Path, verdict: Verdict, settings: Settings, command: str)
     for place, part in parts.items():
         page = page.replace(place, part)
     path.write_text(page, "utf-8")
+
+
+def write_strip(path: Path, verdict: Verdict) -> bool:
+    """Writes a small picture of both images and their difference for a list; false where there is nothing to show."""
+    if not can_be_shown(verdict):
+        return False
+    assert verdict.pictures
+    new, reference = verdict.pictures
+    path.write_bytes(strip(new, reference, exposure(reference.color)))
+    return True
+
+
+def can_be_shown(verdict: Verdict) -> bool:
+    """Whether there are images, of numbers."""
+    return verdict.pictures is not None and all(np.isfinite(p.color).all() for p in verdict.pictures)
 
 
 def resource(name: str) -> str:

@@ -14,6 +14,8 @@ const MODES = [
   ["significance", "Beyond noise", "How far 8×8 blocks differ; noise alone stays dark.", HOT],
   ["flip", "FLIP", "What a person would notice when the images are swapped.", HOT, "nothing", "everything"],
 ];
+// A block of a large image would not be found otherwise.
+const SMALLEST_FRAME = 20;
 const state = { mode: "swap", held: false, blink: 0, wipe: 0.5, exposure: 0, zoom: 0 };
 const planes = {};
 
@@ -88,8 +90,9 @@ function layout() {
   $("block").hidden = !block;
   if (!block) return;
   const [x0, y0, x1, y1] = block.map((v, i) => ((v - origin[i % 2]) / factor) * zoom);
-  const style = { left: `${x0}px`, top: `${y0}px`, width: `${x1 - x0}px`, height: `${y1 - y0}px` };
-  Object.assign($("block").style, style);
+  const [w, h] = [x1 - x0, y1 - y0].map((extent) => Math.max(extent, SMALLEST_FRAME));
+  const style = { left: (x0 + x1 - w) / 2, top: (y0 + y1 - h) / 2, width: w, height: h };
+  for (const [key, value] of Object.entries(style)) $("block").style[key] = `${value}px`;
 }
 
 function setMode(mode) {
