@@ -170,6 +170,9 @@ pub fn walk(
             break;
         }
         walk.go_on(here, &step, survival);
+        if walk.throughput == Rgb::ZERO {
+            break;
+        }
         std::mem::swap(&mut walk.from, &mut here);
         visitor.leave(walk.from);
     }
@@ -238,7 +241,7 @@ fn next_event_estimate(
     let geometry = x0.projected(edge.to_eye) * here.projected(edge.to_eye) * edge.falloff;
     let scattering = here.evaluate(-edge.to_eye, -walk.direction);
     let value = scattering.value * world.emitted(x0, edge.to_eye) * (geometry / density);
-    if value == Rgb::ZERO {
+    if walk.throughput * value == Rgb::ZERO {
         return;
     }
     let hidden = world.passed(x0, here) * world.coverage(x0);

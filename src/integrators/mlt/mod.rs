@@ -1,6 +1,6 @@
 //! Metropolis light transport (Veach & Guibas 1997), seeded by bidirectional path tracing without start-up bias.
 
-mod base;
+pub mod base;
 pub mod chain;
 pub mod chains;
 pub mod choice;

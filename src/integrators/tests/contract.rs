@@ -11,16 +11,21 @@ use ajar_integrators::mlt::{
     choice::{MAX_MUTATIONS, Selection, Table},
     manifold::{Walker, generalized_geometry},
     mutations::{Bidirectional, Lens, mutations},
-    path::{Path, Signature, Space},
+    path::{Node, Path, Signature, Space},
     proposal::Proposal,
     seeds::{Bootstrap, resample},
     target::{Aim, Target},
 };
+use ajar_integrators::{
+    mlt::base::contribution,
+    path::{Found, Visitor, walk},
+};
 use ajar_render::{
     World,
-    math::Frame,
+    math::{Frame, scalar},
     path::{Site, Vertex},
     rng::{Purpose, Rng},
+    sampler::Sequence,
 };
 use common::{scenes::SCENES, settings};
 use glam::DVec3;
@@ -305,4 +310,54 @@ fn the_driver_keeps_the_target_of_a_discrete_world() {
     };
     assert!(worst(false) < 1e-12, "{}", worst(false));
     assert!(worst(true) > 1e-3, "a ratio without the choice of the mutation must fail: {}", worst(true));
+}
+
+/// Builds the paths that the path tracer finds, and compares.
+struct Contributions<'a> {
+    space: Space<'a>,
+    walked: Vec<Vertex>,
+    path: Path,
+    seen: usize,
+    off: usize,
+}
+
+impl Visitor for Contributions<'_> {
+    fn leave(&mut self, vertex: &Vertex) {
+        self.walked.push(*vertex);
+    }
+
+    fn found(&mut self, found: &Found<'_>) {
+        if found.edges < 2 {
+            return;
+        }
+        let ends = std::iter::once(found.x0).chain(found.seen_from);
+        self.path.nodes.clear();
+        self.path.nodes.extend(ends.chain(self.walked.iter().rev()).map(|vertex| Node::new(*vertex)));
+        self.path.measure(&self.space, (0, found.edges), found.seen_from.map(|_| 0)).unwrap();
+        let error = contribution(&self.path) / scalar(found.value) - 1.0;
+        self.seen += 1;
+        self.off += usize::from(error.abs() > 1e-4);
+    }
+}
+
+/// The shares of base and chains add up to 1 only if both compute the same C.
+#[test]
+fn paths_contribute_to_the_base_what_chains_think() {
+    for scene in SCENES {
+        let world = (scene.world)();
+        let settings = settings(&world, 3, scene.depth, 1);
+        let space = Space::new(&world, settings.window, scene.depth);
+        let path = Path::with_capacity();
+        let mut all = Contributions { space, walked: Vec::new(), path, seen: 0, off: 0 };
+        let mut rng = Rng::new(3, Purpose::Test, 0, 0);
+        for sample in 0..2000 {
+            all.walked.clear();
+            let raster = space.raster(rng.pair());
+            let mut sampler = Sequence::new(3, 0, sample).sample(0);
+            walk(&world, scene.depth, raster, &mut sampler, &mut all);
+        }
+        println!("{}: {} paths, C differs for {}", scene.name, all.seen, all.off);
+        // Directions are found again from points, which are rounded: between neighbours in a corner that shows.
+        assert!(all.seen > 0 && all.off * 100 < all.seen, "{}: {} of {}", scene.name, all.off, all.seen);
+    }
 }
