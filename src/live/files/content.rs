@@ -6,8 +6,8 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// Resolution of the clocks of most file systems, with room to spare.
-const CLOCK: Duration = Duration::from_millis(50);
+/// Resolution of the clocks of most file systems, which is that of the kernel, with room to spare.
+const CLOCK: Duration = Duration::from_millis(15);
 /// Of the coarsest, FAT.
 const COARSE_CLOCK: Duration = Duration::from_secs(2);
 

@@ -33,10 +33,11 @@ impl Folders {
         Self { watcher: None, folders: BTreeMap::new() }
     }
 
-    /// Watches the folders of these files and no others.
-    pub fn watch(&mut self, files: &BTreeSet<PathBuf>) {
+    /// Watches the folders of these files and no others. Returns whether there is a new one.
+    pub fn watch(&mut self, files: &BTreeSet<PathBuf>) -> bool {
         let wanted: BTreeSet<PathBuf> = files.iter().flat_map(|file| above(file)).collect();
-        let Some(watcher) = &mut self.watcher else { return };
+        let Some(watcher) = &mut self.watcher else { return false };
+        let mut is_new = false;
         self.folders.retain(|folder, _| {
             let stays = wanted.contains(folder);
             if !stays {
@@ -49,8 +50,10 @@ impl Folders {
             if !self.folders.contains_key(&folder) {
                 let agreed = watcher.watch(&folder, RecursiveMode::NonRecursive).is_ok();
                 self.folders.insert(folder, agreed);
+                is_new = true;
             }
         }
+        is_new
     }
 
     /// The same after `folder` or one below came or went: the system may still tell about the old one.

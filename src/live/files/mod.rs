@@ -201,6 +201,14 @@ impl State {
         if !self.pending.is_still() {
             return None;
         }
+        // A folder may have come between looking for it and watching the one above.
+        let is_missing = |path: &PathBuf| self.files.contains_key(path) && !path.exists();
+        if self.pending.paths().any(is_missing)
+            && self.folders.watch(&self.paths())
+            && self.pending.wait_longer()
+        {
+            return None;
+        }
         let found: BTreeMap<_, _> = self
             .pending
             .paths()

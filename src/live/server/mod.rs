@@ -42,11 +42,26 @@ pub struct Asset {
 
 /// What all pages see.
 #[derive(Clone, Debug, Default)]
-pub struct Shown {
-    /// The image.
-    pub frame: Arc<Frame>,
-    /// JSON documents, each sent when it is another one than before.
-    pub documents: Vec<Arc<str>>,
+struct Shown {
+    frame: Arc<Frame>,
+    /// Each is sent when it is another one than before.
+    documents: Vec<Arc<str>>,
+}
+
+/// Where what all pages see is put. Clones are the same place.
+#[derive(Clone, Debug, Default)]
+pub struct Stage(watch::Sender<Shown>);
+
+impl Stage {
+    /// Shows an image.
+    pub fn show_frame(&self, frame: Arc<Frame>) {
+        self.0.send_modify(|shown| shown.frame = frame);
+    }
+
+    /// Shows documents, each of which pages get if it is another one than before.
+    pub fn show_documents(&self, documents: Vec<Arc<str>>) {
+        self.0.send_modify(|shown| shown.documents = documents);
+    }
 }
 
 /// Sends a text to the page that asked for it. A page that reads too slowly misses it.
@@ -90,14 +105,14 @@ pub struct Server {
 }
 
 impl Server {
-    /// Begins to serve `assets`, and what `shown` shows, on a thread of its own.
+    /// Begins to serve `assets`, and what is on `stage`, on a thread of its own.
     ///
     /// # Errors
     /// The address is taken or not of this machine, or the thread cannot be started.
     pub fn start(
         options: Options,
         assets: &'static [Asset],
-        shown: watch::Receiver<Shown>,
+        stage: &Stage,
         program: Arc<dyn Program>,
     ) -> io::Result<Self> {
         let listener = TcpListener::bind(options.address)?;
@@ -106,7 +121,7 @@ impl Server {
         let (end, ended) = oneshot::channel();
         let access = Access { token: options.token.clone(), address };
         let pages = Arc::new(Semaphore::new(options.pages));
-        let room = Arc::new(Room { access, assets, shown, program, pages });
+        let room = Arc::new(Room { access, assets, shown: stage.0.subscribe(), program, pages });
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         thread::Builder::new().name("server".into()).spawn(move || {
             runtime.block_on(async {
