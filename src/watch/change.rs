@@ -71,6 +71,7 @@ impl Watch<'_> {
         self.about = describe::scene(&opened, edits::pivot(&opened)).to_string().into();
         self.opened = Some(opened);
         self.resting = None;
+        self.is_endless = false;
         self.work();
     }
 
@@ -106,7 +107,11 @@ impl Watch<'_> {
         self.state.plan(&opened.plan);
         self.number += 1;
         let (world, camera) = (Arc::clone(&opened.world), opened.camera.clone());
-        let job = Job { world, camera, plan: opened.plan.clone(), done };
+        let mut plan = opened.plan.clone();
+        if self.is_endless {
+            plan.rules = StopRules::default();
+        }
+        let job = Job { world, camera, plan, done };
         match Worker::start(self.number, job, Arc::clone(&self.screen), self.events.0.clone()) {
             Ok(worker) => (self.worker, self.state.phase) = (Some(worker), Phase::Rendering),
             Err(error) => {
@@ -129,13 +134,19 @@ impl Watch<'_> {
         self.state.shown_for = self.state.changed.clone();
     }
 
-    /// Goes on beyond what was asked for.
+    /// Goes on, beyond what was asked for if that is reached.
     pub(super) fn go_on(&mut self) {
-        if let Some(opened) = &mut self.opened
-            && self.state.phase == Phase::Done
-        {
-            opened.plan.rules = StopRules::default();
-        }
+        self.is_endless |= self.state.phase == Phase::Done;
         self.work();
+    }
+
+    /// Renders anew.
+    pub(super) fn begin_again(&mut self) {
+        self.rest();
+        self.resting = None;
+        self.is_endless = false;
+        if !self.is_stale {
+            self.work();
+        }
     }
 }

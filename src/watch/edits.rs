@@ -30,13 +30,7 @@ impl Watch<'_> {
             }
             Request::Continue {} if self.worker.is_none() && !self.is_stale => self.go_on(),
             Request::Stop {} | Request::Continue {} => {}
-            Request::Restart {} => {
-                self.rest();
-                self.resting = None;
-                if !self.is_stale {
-                    self.work();
-                }
-            }
+            Request::Restart {} => self.begin_again(),
             Request::Region { pixels } => self.choose_region(pixels),
             Request::Probe { x, y } => self.probe(x, y, reply),
             Request::Camera(view) => self.edit("camera", |draft, opened| look_from(draft, opened, view)),
@@ -64,11 +58,7 @@ impl Watch<'_> {
         let window = pixels.map(|[x0, y0, x1, y1]| Window { x0, y0, x1: x1.min(width), y1: y1.min(height) });
         self.region = window.filter(|it| it.x0 < it.x1 && it.y0 < it.y1);
         opened.plan.settings.window = self.region.unwrap_or(Window { x0: 0, y0: 0, x1: width, y1: height });
-        self.rest();
-        self.resting = None;
-        if !self.is_stale {
-            self.work();
-        }
+        self.begin_again();
     }
 
     fn probe(&self, x: u32, y: u32, reply: &Reply) {

@@ -170,6 +170,8 @@ pub struct Watch<'a> {
     /// Where changes are saved.
     layer: PathBuf,
     region: Option<Window>,
+    /// Whether the render goes on beyond what was asked for.
+    is_endless: bool,
     /// The document that describes the scene.
     about: Arc<str>,
     state: State,
@@ -210,6 +212,7 @@ impl<'a> Watch<'a> {
             sound_draft: Draft::default(),
             layer: opened::layer_beside(subject.path()),
             region: None,
+            is_endless: false,
             about: "{}".into(),
             state: State { scene: subject.path().display().to_string(), ..State::default() },
             is_news: true,
@@ -293,7 +296,7 @@ impl<'a> Watch<'a> {
     fn tell(&mut self, view: &mut dyn View) {
         let (at, image, phase) = self.told;
         let is_same = (image, phase) == (self.state.image, self.state.phase);
-        if (is_same && !self.is_news) || (is_same && at.elapsed() < INTERVAL) {
+        if is_same && (!self.is_news || at.elapsed() < INTERVAL) {
             return;
         }
         self.is_news = false;

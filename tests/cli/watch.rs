@@ -92,7 +92,7 @@ impl Watch {
     fn wait_for(&mut self, what: impl Fn(&Value) -> bool) -> Value {
         let parsed = |line: std::io::Result<String>| serde_json::from_str::<Value>(&line.unwrap()).unwrap();
         // No such line at all means that the program has ended.
-        self.messages.by_ref().map(parsed).find(what).expect("no such message")
+        self.messages.by_ref().map(parsed).find(what).unwrap()
     }
 
     /// Waits until a finished image is written.

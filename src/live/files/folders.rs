@@ -1,7 +1,7 @@
 //! The folders that the system is asked to tell about.
 
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::{BTreeMap, BTreeSet, btree_map::Entry},
     path::{Path, PathBuf},
     sync::mpsc::Sender,
 };
@@ -47,9 +47,9 @@ impl Folders {
             stays
         });
         for folder in wanted {
-            if !self.folders.contains_key(&folder) {
-                let agreed = watcher.watch(&folder, RecursiveMode::NonRecursive).is_ok();
-                self.folders.insert(folder, agreed);
+            if let Entry::Vacant(place) = self.folders.entry(folder) {
+                let agreed = watcher.watch(place.key(), RecursiveMode::NonRecursive).is_ok();
+                place.insert(agreed);
                 is_new = true;
             }
         }
