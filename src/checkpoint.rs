@@ -143,6 +143,7 @@ struct Header {
     shard: [u32; 2],
     complete: bool,
     seconds: f64,
+    mutations_per_sample: Option<f64>,
     form: Form,
 }
 
@@ -157,6 +158,8 @@ pub struct Saved {
     pub complete: bool,
     /// Time spent, all runs together.
     pub seconds: f64,
+    /// Mutations for each sample, where chains work beside samples.
+    pub mutations_per_sample: Option<f64>,
     /// How its image is written.
     pub form: Form,
     /// The sum of the rounds.
@@ -175,6 +178,7 @@ pub fn save(path: &Path, run: &Run<'_>, form: &Form) -> Result<(), OutputError> 
         shard: [run.shard.index, run.shard.count],
         complete: run.complete,
         seconds: run.status.elapsed.as_secs_f64(),
+        mutations_per_sample: run.report.number("mutations_per_sample"),
         form: form.clone(),
     };
     let text = serde_json::to_string(&header).map_err(|error| OutputError::Encode(error.to_string()))?;
@@ -193,7 +197,7 @@ pub fn open(path: &Path) -> Result<Saved, Diagnostic> {
 }
 
 fn understand(Checkpoint { text, film, floats }: Checkpoint) -> Option<Saved> {
-    let Header { subject, shard: [index, count], complete, seconds, form } =
+    let Header { subject, shard: [index, count], complete, seconds, mutations_per_sample, form } =
         serde_json::from_str(&text).ok()?;
     let (chunks, rest) = floats.as_chunks();
     let features: Vec<_> = chunks.iter().map(from_numbers).collect();
@@ -208,6 +212,7 @@ fn understand(Checkpoint { text, film, floats }: Checkpoint) -> Option<Saved> {
         shard: Shard { index, count },
         complete,
         seconds,
+        mutations_per_sample,
         form,
         film,
         features,

@@ -164,7 +164,7 @@ pub fn write(run: &Run<'_>, to: &Destination) -> Result<Vec<Diagnostic>, OutputE
             .push(Diagnostic::warning(format!("{rejected} contributions were not finite and were left out")));
     }
     notes.extend(run.report.warnings.iter().map(|w| Diagnostic::warning(w.as_str())));
-    if beauty.iter().all(|v| *v == 0.0) {
+    if run.is_black() {
         notes.push(Diagnostic::warning("the image is black: no light reaches the camera"));
     }
     Ok(notes)
@@ -239,6 +239,7 @@ fn metadata(run: &Run<'_>) -> Metadata {
         mutations_per_sample: run.report.number("mutations_per_sample"),
         noise: status.noise.map(|n| n.typical),
         complete: run.complete,
+        black: run.is_black(),
         shard: (!run.shard.is_whole()).then_some((run.shard.index, run.shard.count)),
         block_variances: block_variances(run),
     }
@@ -248,6 +249,11 @@ impl Run<'_> {
     /// What the camera multiplies the film by.
     fn exposure(&self) -> f64 {
         self.camera.0.exposure.into()
+    }
+
+    /// Whether no light has reached the camera.
+    fn is_black(&self) -> bool {
+        (0..self.film.pixels()).all(|pixel| self.film.mean(pixel) == Rgb::ZERO)
     }
 
     /// Numbers about the render.
@@ -267,6 +273,7 @@ impl Run<'_> {
             "rejected_contributions": self.film.rejected(),
             "scene_hash": self.scene_hash,
             "complete": self.complete,
+            "black": self.is_black(),
         })
     }
 }

@@ -7,7 +7,7 @@ use std::{
 };
 
 use ajar_integrators::{
-    Context, Integrator, Report, Settings,
+    Context, Integrator, Report, Rounds, Settings,
     stats::{Noise, noise},
     stop::{Reason, StopRules, is_noise_check},
 };
@@ -236,7 +236,7 @@ pub struct Start {
 }
 
 /// Renders rounds until a rule holds or `cancel` is raised; the round in progress is then dropped. `each_round` sees the
-/// film after every round.
+/// film after every round, and who can tell about it.
 pub fn render(
     world: &World,
     integrator: &dyn Integrator,
@@ -244,7 +244,7 @@ pub fn render(
     rules: &StopRules,
     start: Start,
     cancel: &AtomicBool,
-    mut each_round: impl FnMut(&Film, &Status),
+    mut each_round: impl FnMut(&Film, &Status, &dyn Rounds),
 ) -> Rendered {
     let began = Instant::now();
     let window = settings.window;
@@ -266,7 +266,7 @@ pub fn render(
         }
         film.merge(&round, prepared.scale());
         status = look(&film, settings, before + began.elapsed(), status.noise);
-        each_round(&film, &status);
+        each_round(&film, &status, &*prepared);
     };
     status.noise = noise(&film, window);
     status.elapsed = before + began.elapsed();

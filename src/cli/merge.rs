@@ -44,6 +44,8 @@ fn execute(args: &Args, log: Format) -> Result<(), Vec<Diagnostic>> {
         elapsed: Duration::try_from_secs_f64(sum.seconds).unwrap_or_default(),
         noise: noise(&sum.film, settings.window),
     };
+    let told = sum.mutations_per_sample.map(|number| ("mutations_per_sample".into(), number));
+    let report = Report { numbers: told.into_iter().collect(), ..Report::default() };
     let run = Run {
         camera: &(sum.subject.camera, sum.subject.camera_place),
         size: sum.subject.size,
@@ -53,7 +55,7 @@ fn execute(args: &Args, log: Format) -> Result<(), Vec<Diagnostic>> {
         film: &sum.film,
         shard: sum.shard,
         status: &status,
-        report: &Report::default(),
+        report: &report,
         complete: sum.complete,
         scene_hash: &sum.subject.scene,
     };

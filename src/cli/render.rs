@@ -1,9 +1,13 @@
 //! `ajar render`.
 
-use std::{cell::OnceCell, path::PathBuf, time::Duration};
+use std::{
+    cell::{LazyCell, OnceCell},
+    path::PathBuf,
+    time::Duration,
+};
 
 use ajar_integrators::{
-    Report,
+    Report, Rounds,
     features::{Features, features as first_hits},
 };
 use ajar_render::{World, film::Film};
@@ -106,9 +110,9 @@ fn image(args: &Args, log: Format, signals: &Signals) -> Result<Exit, Vec<Diagno
     }
     let Job { integrator, settings, shard, rules, destination, .. } = &ready.job;
     let (mut progress, mut saving) = (Progress::new(args.quiet, log), args.checkpoints.saving());
-    let each_round = |film: &Film, status: &Status| {
+    let each_round = |film: &Film, status: &Status, rounds: &dyn Rounds| {
         progress.update(status, rules);
-        let report = Report::default();
+        let report = LazyCell::new(|| rounds.report());
         let run = || ready.run(film, status, &report, false);
         if signals.snapshot_asked() {
             snapshot(&run(), destination, args, log);

@@ -45,6 +45,8 @@ pub struct Metadata {
     pub noise: Option<f64>,
     /// Whether the stop rule was reached; `false` for snapshots and interrupted renders.
     pub complete: bool,
+    /// Whether no light reached the camera; written only then.
+    pub black: bool,
     /// Which part of how many a shard holds, as given to `--shard i/n`.
     pub shard: Option<(u32, u32)>,
     /// Errors of areas, of every side that is kept.
@@ -81,6 +83,7 @@ impl Metadata {
             ("ajar:sceneHash", Text(text(&self.scene_hash))),
             ("ajar:complete", I32(self.complete.into())),
         ];
+        custom.extend(self.black.then_some(("ajar:black", I32(1))));
         custom.extend(self.mutations_per_sample.map(|n| ("ajar:mutationsPerSample", F32(n as f32))));
         custom.extend(self.noise.map(|noise| ("ajar:noise", F32(noise as f32))));
         custom.extend(self.shard.map(|(i, n)| ("ajar:shard", Text(text(&format!("{i}/{n}"))))));

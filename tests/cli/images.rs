@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::bench::Bench;
+use crate::bench::{Bench, SCENE};
 
 #[test]
 fn an_asset_without_output_name_goes_to_the_current_folder() {
@@ -129,4 +129,24 @@ fn quiet_is_quiet_and_a_dry_run_writes_nothing() {
     let run = bench.run("render leaf.gltf --size 8x8 --spp 1 --quiet").exits(0);
     assert_eq!((run.out.as_str(), run.err.as_str()), ("", ""));
     assert!(bench.has("leaf.exr"));
+}
+
+/// The lamp shines away from everything.
+#[test]
+fn darkness_is_told_and_marked() {
+    let bench = Bench::new();
+    let lamp = "type = \"rect\"\nposition = [0, -5, 0]\ndirection = [0, -1, 0]";
+    let sun = "type = \"directional\"\ndirection = [-1, -2, -1]\nilluminance = 10";
+    let dark = SCENE.replace(sun, lamp);
+    assert_ne!(dark, SCENE);
+    bench.write("kitchen/dark.toml", &dark);
+    for integrator in ["path", "bdpt", "mlt", "ajar"] {
+        let command =
+            format!("render kitchen/dark.toml -o dark.exr --stats-json stats.json --integrator {integrator}");
+        bench.run(&command).exits(0).says(&["the image is black: no light reaches the camera"]);
+        let stats: serde_json::Value =
+            serde_json::from_slice(&fs::read(bench.path("stats.json")).unwrap()).unwrap();
+        assert_eq!(stats["black"], true);
+        assert!(bench.has("dark.exr"));
+    }
 }

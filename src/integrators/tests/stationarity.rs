@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use ajar_integrators::mlt::{
     Aux, Mutation, Reject,
+    manifold::generalized_geometry,
     mutations::{
         Bidirectional, Caustic, Chances, EyeChain, Lens, LensSubpath, LightChain, Manifold, MultiChain,
         Technique, Window, mutations,
@@ -105,7 +106,7 @@ impl Mutation for Broken<'_> {
 #[test]
 fn a_wrong_factor_shows() {
     type Error = fn(&Space<'_>, &Path, &Path, &Aux) -> f64;
-    let variants: [(&str, &dyn Mutation, Error); 8] = [
+    let variants: [(&str, &dyn Mutation, Error); 10] = [
         ("without p_d", &Bidirectional, |space, x, _, aux| 1.0 / Chances::new(space, x, aux).range),
         ("without p_a", &Bidirectional, |space, x, _, aux| 1.0 / Chances::new(space, x, aux).length),
         ("without the choice of the split", &Bidirectional, |space, x, _, aux| {
@@ -116,6 +117,12 @@ fn a_wrong_factor_shows() {
         ("without the camera's density", &Lens, |_, _, y, _| 1.0 / y.nodes[y.edges()].to_light),
         ("without importance", &Caustic, |_, _, y, _| y.nodes[y.edges()].to_light),
         ("without the contribution", &MultiChain, |_, _, y, _| y.scalar()),
+        ("without the chances of lobes", &Technique, |_, _, _, aux| aux.labels[1]),
+        ("without the generalized geometry", &Manifold, |space, _, y, aux| {
+            let bend = (aux.stem..aux.stem + aux.added).rev().find(|&i| y.connectable(i)).unwrap();
+            let chain: Vec<_> = y.nodes[aux.stem - 1..=bend].iter().map(|node| node.vertex).collect();
+            generalized_geometry(space.world, &chain).unwrap()
+        }),
     ];
     for (what, inner, error) in variants {
         let broken = Broken { inner, error };

@@ -53,6 +53,7 @@ fn picture() -> Picture {
             mutations_per_sample: Some(3.5),
             noise: Some(0.25),
             complete: true,
+            black: true,
             shard: Some((2, 8)),
             block_variances: vec![
                 BlockVariances { side: Some(8), values: vec![0.5, 0.25, 1.0] },
@@ -126,6 +127,7 @@ fn metadata_is_kept() {
         ("ajar:mutationsPerSample", AttributeValue::F32(3.5)),
         ("ajar:noise", AttributeValue::F32(0.25)),
         ("ajar:complete", AttributeValue::I32(1)),
+        ("ajar:black", AttributeValue::I32(1)),
         ("ajar:shard", AttributeValue::Text("2/8".into())),
         ("ajar:blockVariance8", floats(&[0.5, 0.25, 1.0])),
         ("ajar:imageVariance", floats(&[0.1, 0.2, 0.3])),

@@ -4,7 +4,7 @@
 //! what the layers below it get; both need these directional albedos. Tables are integrated with a fixed rule, once per
 //! index of refraction, and kept for the life of the program: an index takes some 30 KiB.
 
-use std::{f64::consts::PI, sync::OnceLock};
+use std::{f64::consts::PI, iter::Sum, ops::Div, sync::OnceLock};
 
 use glam::{DVec2, DVec3, DVec4};
 
@@ -194,8 +194,8 @@ fn blend(place: Row, row: impl Fn(usize) -> DVec4) -> Albedo {
 }
 
 /// Cosine-weighted average over the hemisphere of a function of the cosine, from `n` samples of it.
-pub fn mean(n: u32, f: impl Fn(f64) -> f64) -> f64 {
-    (0..n).map(|i| f(((f64::from(i) + 0.5) / f64::from(n)).sqrt())).sum::<f64>() / f64::from(n)
+pub fn mean<T: Sum + Div<f64, Output = T>>(n: u32, f: impl Fn(f64) -> T) -> T {
+    (0..n).map(|i| f(((f64::from(i) + 0.5) / f64::from(n)).sqrt())).sum::<T>() / f64::from(n)
 }
 
 /// Weights that integrate 2 cosθ f(cosθ) exactly for `f` interpolated between the nodes.

@@ -2,7 +2,7 @@
 //! Iridescence", as KHR_materials_iridescence adopts it: interference in a film on a base of known reflectance, its
 //! spectrum integrated against Gaussian fits of the colour matching functions.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec3};
 
@@ -55,8 +55,8 @@ impl Film {
         let bottom_normal = base_ior.map(|n| ((n - ior) / (n + ior)).powi(2));
         let bottom = bottom_normal + (Rgb::ONE - bottom_normal) * edge_weight(inner);
         let path = 2.0 * ior * thickness * inner;
-        let flip = if ior < 1.0 { PI } else { 0.0 };
-        let phase = base_ior.map(|n| if n < ior { PI } else { 0.0 }) + Rgb::splat(PI - flip);
+        // Reflection at a denser medium turns the phase by half a wave, at one of both sides of the film or at both.
+        let turn = base_ior.map(|n| if (n < ior) == (ior < 1.0) { -1.0 } else { 1.0 });
         let product = (bottom * top).clamp(Rgb::splat(1e-5), Rgb::splat(MOST));
         let amplitude = product.map(f64::sqrt);
         let passed = (1.0 - top) * (1.0 - top);
@@ -64,8 +64,8 @@ impl Film {
         let mut sum = Rgb::splat(top) + single;
         let mut order = single - Rgb::splat(1.0 - top);
         for m in 1..=ORDERS {
-            order *= amplitude;
-            sum += order * sensitivity(f64::from(m) * path, phase * f64::from(m)) * 2.0;
+            order *= amplitude * turn;
+            sum += order * sensitivity(f64::from(m) * path) * 2.0;
         }
         sum.clamp(Rgb::ZERO, Rgb::ONE)
     }
@@ -84,7 +84,7 @@ fn index(normal: f64) -> f64 {
 
 /// Fourier transform of the colour matching functions at an optical path difference in nanometres, as linear Rec.709 in
 /// which equal energy is white: films without effect must have none.
-fn sensitivity(path: f64, shift: Rgb) -> Rgb {
+fn sensitivity(path: f64) -> Rgb {
     const TO_RGB: DMat3 = DMat3::from_cols_array(&[
         3.240_454_2,
         -0.969_266_0,
@@ -101,20 +101,15 @@ fn sensitivity(path: f64, shift: Rgb) -> Rgb {
     let value = DVec3::new(5.4856e-13, 4.4201e-13, 5.2481e-13);
     let position = DVec3::new(1.6810e6, 1.7953e6, 2.2084e6);
     let variance = DVec3::new(4.3278e9, 9.3046e9, 6.6121e9);
-    let at = |shift: f64| {
-        let mut xyz = DVec3::from_array(std::array::from_fn(|i| {
-            value[i]
-                * (TAU * variance[i]).sqrt()
-                * (position[i] * phase + shift).cos()
-                * (-variance[i] * phase * phase).exp()
-        }));
-        xyz.x += 9.7470e-14
-            * (TAU * 4.5282e9).sqrt()
-            * (2.2399e6 * phase + shift).cos()
-            * (-4.5282e9 * phase * phase).exp();
-        TO_RGB * (xyz / 1.0685e-7) / WHITE
-    };
-    Rgb::new(at(shift.x).x, at(shift.y).y, at(shift.z).z)
+    let mut xyz = DVec3::from_array(std::array::from_fn(|i| {
+        value[i]
+            * (TAU * variance[i]).sqrt()
+            * (position[i] * phase).cos()
+            * (-variance[i] * phase * phase).exp()
+    }));
+    xyz.x +=
+        9.7470e-14 * (TAU * 4.5282e9).sqrt() * (2.2399e6 * phase).cos() * (-4.5282e9 * phase * phase).exp();
+    TO_RGB * (xyz / 1.0685e-7) / WHITE
 }
 
 #[cfg(test)]

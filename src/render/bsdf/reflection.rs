@@ -65,15 +65,13 @@ impl Layered {
         if metallic > 0.0 { reflectance + self.metal(facet) * metallic } else { reflectance }
     }
 
-    /// Averages over the hemisphere of what metal and, under a film, dielectric reflect.
+    /// Averages over the hemisphere of what metal and, under a film, dielectric reflect; 0 of metal where there is none.
     pub fn mean_reflectance(&self) -> [Rgb; 2] {
         if self.film.is_none() {
             return [self.base.map(schlick_average), Rgb::ZERO];
         }
-        let over = |f: &dyn Fn(f64) -> Rgb| {
-            Rgb::from_array(std::array::from_fn(|i| mean(FILM_COSINES, |cos| f(cos)[i])))
-        };
-        [over(&|cos| self.metal(cos)), over(&|cos| self.dielectric(cos))]
+        let metal = |cos| if self.metallic() > 0.0 { self.metal(cos) } else { Rgb::ZERO };
+        [mean(FILM_COSINES, metal), mean(FILM_COSINES, |cos| self.dielectric(cos))]
     }
 
     /// Single-scattering albedos of metal and opaque dielectric under a film for `w` with z > 0, by a small fixed rule on
@@ -82,8 +80,9 @@ impl Layered {
         const RADII: [f64; 2] = [0.45, 0.85];
         const AXES: u32 = 4;
         self.film?;
+        let metal = |facet| if self.metallic() > 0.0 { self.metal(facet) } else { Rgb::ZERO };
         if self.ggx.is_smooth() {
-            return Some([self.metal(w.z), self.dielectric(w.z)]);
+            return Some([metal(w.z), self.dielectric(w.z)]);
         }
         let mut sums = [Rgb::ZERO; 2];
         for i in 0..AXES {
@@ -96,7 +95,7 @@ impl Layered {
                 let out = h * (2.0 * w.dot(h)) - w;
                 if out.z > 0.0 {
                     let seen = share * 4.0 * out.z * self.ggx.visibility(w, out) / self.ggx.visible(w);
-                    sums[0] += self.metal(facet) * seen;
+                    sums[0] += metal(facet) * seen;
                     sums[1] += self.dielectric(facet) * seen;
                 }
             }

@@ -131,3 +131,50 @@ impl Place {
         Self { column, x, step, y: turn - step as f64 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        rng::{Purpose, Rng},
+        warp::square_to_cosine_hemisphere,
+    };
+
+    fn exact(ggx: &Ggx, w: DVec3) -> Albedo {
+        integrate_direction(ggx, w, 1.5, 96, TAU / 96.0, 96)
+    }
+
+    /// Between nodes, too, and where the view leaves the brushed axis.
+    #[test]
+    fn albedos_are_those_of_the_lobe() {
+        let table = Stretched::integrate(1.5);
+        let mut rng = Rng::new(11, Purpose::Test, 0, 70);
+        let mut worst = [0f64; 2];
+        for _ in 0..300 {
+            let wide = 0.05 + 0.95 * rng.f64();
+            let ggx = Ggx::along_tangent(wide, wide * (0.02 + 0.98 * rng.f64()));
+            let w = square_to_cosine_hemisphere(rng.pair());
+            let (found, exact) = (table.albedo(&ggx, w), exact(&ggx, w));
+            worst[0] = worst[0].max((found.total - exact.total).abs());
+            worst[1] = worst[1].max((found.reflected - exact.reflected).abs());
+        }
+        println!("total within {:.4}, reflected within {:.4}", worst[0], worst[1]);
+        assert!(worst[0] < 0.012 && worst[1] < 0.006, "{worst:?}");
+    }
+
+    #[test]
+    fn averages_are_those_of_the_lobe() {
+        let table = Stretched::integrate(1.5);
+        for (wide, narrow) in [(0.366, 0.01), (0.5, 0.06), (1.0, 0.3)] {
+            let ggx = Ggx::along_tangent(wide, narrow);
+            let n = 16;
+            let directions = (0..n * n).map(|i| {
+                let [u, v] = [i / n, i % n].map(|k| (f64::from(k) + 0.5) / f64::from(n));
+                (DVec2::from_angle(FRAC_PI_2 * u) * v.sqrt()).extend((1.0 - v).sqrt())
+            });
+            let mean = directions.map(|w| exact(&ggx, w).to_table()).sum::<DVec4>() / f64::from(n * n);
+            let found = table.average(&ggx).to_table();
+            assert!((found - mean).abs().max_element() < 0.006, "{wide} {narrow}: {found} {mean}");
+        }
+    }
+}

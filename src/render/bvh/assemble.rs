@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use ajar_scene::Mesh;
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::{
-    Geometry, InstanceGeometry, MeshGeometry, Place,
+    Geometry, InstanceGeometry, Place,
     bake::{Baked, own_blas},
     blas::Blas,
     tlas::{Placed, Tlas},
@@ -27,14 +28,15 @@ pub struct Previous<'a> {
 }
 
 impl Geometry {
-    /// Prepares `instances` of `meshes`.
-    pub fn build(meshes: &[Arc<MeshGeometry>], instances: &[InstanceGeometry]) -> Self {
+    /// Prepares `instances` of the positions and triangles of `meshes`. Triangles with missing or infinite vertices or
+    /// without area are never met.
+    pub fn build(meshes: &[&Mesh], instances: &[InstanceGeometry]) -> Self {
         Self::build_after(meshes, instances, None)
     }
 
     /// As [`Geometry::build`], with the same result, but trees over what did not change are those of `previous`.
     pub fn build_after(
-        meshes: &[Arc<MeshGeometry>],
+        meshes: &[&Mesh],
         instances: &[InstanceGeometry],
         previous: Option<Previous<'_>>,
     ) -> Self {
@@ -42,7 +44,7 @@ impl Geometry {
     }
 
     pub(super) fn build_baking(
-        meshes: &[Arc<MeshGeometry>],
+        meshes: &[&Mesh],
         instances: &[InstanceGeometry],
         copies: usize,
         previous: Option<Previous<'_>>,
@@ -52,7 +54,8 @@ impl Geometry {
         let mut places = Vec::with_capacity(instances.len());
         let mut placed = Vec::new();
         for (number, instance) in instances.iter().enumerate() {
-            let (number, mesh, to_world) = (number as u32, meshes.get(instance.mesh), instance.to_world);
+            let (number, mesh, to_world) =
+                (number as u32, meshes.get(instance.mesh).copied(), instance.to_world);
             let blas = own.get(instance.mesh).and_then(Option::as_ref);
             places.push(match blas.filter(|_| is_invertible(&to_world)) {
                 Some(blas) => {
@@ -102,7 +105,7 @@ impl Previous<'_> {
 
 /// Trees of the meshes that keep one of their own.
 fn own_trees(
-    meshes: &[Arc<MeshGeometry>],
+    meshes: &[&Mesh],
     instances: &[InstanceGeometry],
     copies: usize,
     previous: Option<Previous<'_>>,
@@ -118,7 +121,7 @@ fn own_trees(
         let previous = previous.filter(|previous| previous.same.get(mesh) == Some(&true))?;
         previous.geometry.own.get(mesh)?.clone()
     };
-    let tree = |mesh| is_own(mesh).then(|| kept(mesh).unwrap_or_else(|| Arc::new(own_blas(&meshes[mesh]))));
+    let tree = |mesh| is_own(mesh).then(|| kept(mesh).unwrap_or_else(|| Arc::new(own_blas(meshes[mesh]))));
     (0..meshes.len()).into_par_iter().map(tree).collect()
 }
 

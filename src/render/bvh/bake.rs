@@ -1,85 +1,109 @@
 //! Triangles of meshes and of their placements, gathered around a centre.
 
-use std::sync::Arc;
-
+use ajar_scene::Mesh;
 use glam::{DAffine3, DVec3, Vec3};
-use rayon::prelude::*;
 
-use super::MeshGeometry;
-use super::blas::Blas;
+use super::blas::{Blas, Triangles};
 
 /// Points that the centre is estimated from.
 const SAMPLES: usize = 4096;
 
 /// The tree of a mesh in its own space.
-pub(super) fn own_blas(mesh: &MeshGeometry) -> Blas {
+pub(super) fn own_blas(mesh: &Mesh) -> Blas {
     let step = mesh.positions.len().div_ceil(SAMPLES).max(1);
     let center = median(mesh.positions.iter().step_by(step).map(|p| p.as_dvec3()).collect());
-    let triangles: Vec<_> =
-        mesh.triangles.par_iter().map(|t| place(mesh, t, &DAffine3::from_translation(-center))).collect();
-    let ids: Vec<_> = (0..triangles.len() as u32).map(|i| [0, i]).collect();
-    Blas::build(center, &triangles, &ids)
+    Blas::build(center, &Part { first: 0, instance: 0, mesh, map: DAffine3::from_translation(-center) })
+}
+
+/// A mesh in a place.
+struct Part<'a> {
+    /// Number of its first triangle.
+    first: usize,
+    instance: u32,
+    mesh: &'a Mesh,
+    map: DAffine3,
+}
+
+impl Triangles for Part<'_> {
+    fn len(&self) -> usize {
+        self.mesh.triangles.len()
+    }
+
+    /// NaN where the mesh has no vertex.
+    #[inline]
+    fn get(&self, index: u32) -> [Vec3; 3] {
+        self.mesh.triangles[index as usize].map(|index| {
+            let position = self.mesh.positions.get(index as usize);
+            position.map_or(Vec3::NAN, |p| self.map.transform_point3(p.as_dvec3()).as_vec3())
+        })
+    }
+
+    fn id(&self, index: u32) -> [u32; 2] {
+        [self.instance, index]
+    }
 }
 
 /// Placements that become triangles in world space.
 #[derive(Default)]
 pub(super) struct Baked<'a> {
-    parts: Vec<(u32, &'a MeshGeometry, DAffine3)>,
+    parts: Vec<Part<'a>>,
     triangles: usize,
 }
 
 impl<'a> Baked<'a> {
     /// Adds placement number `instance`; answers with the number of its first triangle.
-    pub(super) fn add(
-        &mut self,
-        instance: u32,
-        mesh: Option<&'a Arc<MeshGeometry>>,
-        to_world: DAffine3,
-    ) -> u32 {
+    pub(super) fn add(&mut self, instance: u32, mesh: Option<&'a Mesh>, to_world: DAffine3) -> u32 {
         let first = self.triangles;
         if let Some(mesh) = mesh {
-            self.parts.push((instance, mesh, to_world));
+            self.parts.push(Part { first, instance, mesh, map: to_world });
             self.triangles += mesh.triangles.len();
         }
         first as u32
     }
 
-    pub(super) fn build(self) -> Blas {
+    pub(super) fn build(mut self) -> Blas {
         let center = self.center();
-        let triangles: Vec<_> = self
-            .parts
-            .par_iter()
-            .flat_map(|&(_, mesh, to_world)| {
-                let map = DAffine3::from_translation(-center) * to_world;
-                mesh.triangles.par_iter().map(move |t| place(mesh, t, &map))
-            })
-            .collect();
-        let ids: Vec<_> = self
-            .parts
-            .par_iter()
-            .flat_map(|&(instance, mesh, _)| {
-                (0..mesh.triangles.len() as u32).into_par_iter().map(move |i| [instance, i])
-            })
-            .collect();
-        Blas::build(center, &triangles, &ids)
+        for part in &mut self.parts {
+            part.map = DAffine3::from_translation(-center) * part.map;
+        }
+        Blas::build(center, &self)
     }
 
     /// Where the detail is: the median of the vertices, which a large ground plane or a stray vertex hardly moves.
     fn center(&self) -> DVec3 {
-        let vertices: usize = self.parts.iter().map(|(_, mesh, _)| mesh.positions.len()).sum();
+        let vertices: usize = self.parts.iter().map(|part| part.mesh.positions.len()).sum();
         let step = vertices.div_ceil(SAMPLES).max(1);
-        let all = self.parts.iter().flat_map(|(_, mesh, to_world)| {
-            mesh.positions.iter().map(move |p| to_world.transform_point3(p.as_dvec3()))
-        });
+        let all = self
+            .parts
+            .iter()
+            .flat_map(|part| part.mesh.positions.iter().map(|p| part.map.transform_point3(p.as_dvec3())));
         median(all.step_by(step).collect())
+    }
+
+    /// The placement with this triangle, and which of its triangles it is.
+    #[inline]
+    fn locate(&self, index: u32) -> (&Part<'a>, u32) {
+        let after = self.parts.partition_point(|part| part.first <= index as usize);
+        let part = &self.parts[after - 1];
+        (part, index - part.first as u32)
     }
 }
 
-/// The vertices of a triangle under `map`; NaN where the mesh has none.
-fn place(mesh: &MeshGeometry, triangle: &[u32; 3], map: &DAffine3) -> [Vec3; 3] {
-    triangle.map(|index| {
-        mesh.positions.get(index as usize).map_or(Vec3::NAN, |p| map.transform_point3(p.as_dvec3()).as_vec3())
-    })
+impl Triangles for Baked<'_> {
+    fn len(&self) -> usize {
+        self.triangles
+    }
+
+    #[inline]
+    fn get(&self, index: u32) -> [Vec3; 3] {
+        let (part, index) = self.locate(index);
+        part.get(index)
+    }
+
+    fn id(&self, index: u32) -> [u32; 2] {
+        let (part, index) = self.locate(index);
+        part.id(index)
+    }
 }
 
 /// The median per axis, of finite points.

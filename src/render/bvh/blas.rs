@@ -1,15 +1,26 @@
 //! A set of triangles with its tree.
 
 use glam::{DVec3, Vec3, Vec3A};
-use obvhs::aabb::Aabb;
 use rayon::prelude::*;
 
-use super::build::{self, Leaves};
-use super::tree::{self, PADDING, Slabs, Tree};
+use super::bounds::Bounds;
+use super::build;
+use super::cut::Leaves;
+use super::tree::{PADDING, Slabs, Tree};
 use super::triangle::{LANES, Packet, Shear};
 
 /// A packet costs about as much as a node: other prices were slower in furnished rooms (`examples/rays.rs`).
 const LEAVES: Leaves = Leaves { capacity: 4, packet: LANES, price: 1.0 };
+
+/// Triangles that a tree is built over.
+pub(super) trait Triangles: Sync {
+    /// How many there are.
+    fn len(&self) -> usize;
+    /// The vertices of one.
+    fn get(&self, index: u32) -> [Vec3; 3];
+    /// Instance and triangle.
+    fn id(&self, index: u32) -> [u32; 2];
+}
 
 /// Triangles around `center`, to which all f32 positions are relative.
 #[derive(Debug)]
@@ -53,29 +64,25 @@ pub(super) struct Refined {
 }
 
 impl Blas {
-    /// `triangles` are relative to `center`; `ids` name them.
-    pub(super) fn build(center: DVec3, triangles: &[[Vec3; 3]], ids: &[[u32; 2]]) -> Self {
+    /// The tree over triangles that are relative to `center`.
+    pub(super) fn build(center: DVec3, triangles: &impl Triangles) -> Self {
+        let all = 0..triangles.len() as u32;
         let (sound, unsound): (Vec<u32>, Vec<u32>) =
-            (0..triangles.len() as u32).into_par_iter().partition(|&i| is_sound(&triangles[i as usize]));
-        let boxes: Vec<Aabb> = sound.par_iter().map(|&i| padded_box(&triangles[i as usize])).collect();
-        let mut packer = Packer { triangles, ids, packets: Vec::new(), slots: vec![0; ids.len()] };
-        let mut members = Vec::new();
-        let tree = build::build(&boxes, LEAVES, |prims| {
-            members.clear();
-            members.extend(prims.iter().map(|&p| sound[p as usize]));
-            packer.pack(&members)
-        });
+            all.into_par_iter().partition(|&i| is_sound(&triangles.get(i)));
+        let boxes: Vec<Bounds> = sound.par_iter().map(|&i| padded_box(&triangles.get(i))).collect();
+        let mut filed = Filed { packets: Vec::new(), slots: vec![0; triangles.len()] };
+        let store = |boxes: &[u32], packed: &mut Vec<Packed>| {
+            packed.extend(
+                boxes.chunks(LANES).map(|boxes| Packed::new(boxes, |b| sound[b as usize], triangles)),
+            );
+        };
+        let tree = build::build(&boxes, LEAVES, store, |packed| filed.file(packed));
         // No leaf refers to these, but their vertices can be asked for.
-        for lost in unsound.chunks(LANES) {
-            packer.pack(lost);
-        }
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for b in &boxes {
-            low = low.min(b.min.as_dvec3());
-            high = high.max(b.max.as_dvec3());
-        }
-        let Packer { packets, slots, .. } = packer;
-        Self { center, low, high, tree, packets, slots }
+        filed.file(unsound.chunks(LANES).map(|lost| Packed::new(lost, |i| i, triangles)).collect());
+        let all = boxes.par_iter().copied().reduce(|| Bounds::EMPTY, Bounds::union);
+        let Filed { mut packets, slots } = filed;
+        packets.shrink_to_fit();
+        Self { center, low: all.low.as_dvec3(), high: all.high.as_dvec3(), tree, packets, slots }
     }
 
     /// Corners of the bounds of the boxes; low above high if there are none.
@@ -106,7 +113,7 @@ impl Blas {
     /// Whether rays meet nothing in it.
     #[inline]
     pub(super) fn is_empty(&self) -> bool {
-        self.tree.nodes.is_empty()
+        self.tree.is_empty()
     }
 
     /// What positions are relative to; none if there is no triangle.
@@ -197,27 +204,41 @@ impl Blas {
     }
 }
 
-struct Packer<'a> {
-    triangles: &'a [[Vec3; 3]],
-    ids: &'a [[u32; 2]],
+/// A packet, and the numbers of its triangles.
+struct Packed {
+    packet: Packet,
+    members: [u32; LANES],
+}
+
+impl Packed {
+    fn new(items: &[u32], member_of: impl Fn(u32) -> u32, triangles: &impl Triangles) -> Self {
+        let mut packed = Self { packet: Packet::empty(), members: [u32::MAX; LANES] };
+        for (lane, &item) in items.iter().enumerate() {
+            let member = member_of(item);
+            packed.packet.set(lane, triangles.get(member).map(|p| p.to_array()), triangles.id(member));
+            packed.members[lane] = member;
+        }
+        packed
+    }
+}
+
+/// Packets in their order, and where each triangle is.
+struct Filed {
     packets: Vec<Packet>,
     slots: Vec<u32>,
 }
 
-impl Packer<'_> {
-    /// Stores triangles in packets of their own.
-    fn pack(&mut self, members: &[u32]) -> u32 {
-        let first = self.packets.len();
-        for group in members.chunks(LANES) {
-            let mut packet = Packet::empty();
-            for (lane, &member) in group.iter().enumerate() {
-                let triangle = self.triangles[member as usize].map(|p| p.to_array());
-                packet.set(lane, triangle, self.ids[member as usize]);
-                self.slots[member as usize] = (self.packets.len() * LANES + lane) as u32;
+impl Filed {
+    fn file(&mut self, packed: Vec<Packed>) {
+        for Packed { packet, members } in packed {
+            let first = self.packets.len() * LANES;
+            for (lane, member) in members.into_iter().enumerate() {
+                if let Some(slot) = self.slots.get_mut(member as usize) {
+                    *slot = (first + lane) as u32;
+                }
             }
             self.packets.push(packet);
         }
-        tree::leaf(first, self.packets.len() - first)
     }
 }
 
@@ -228,11 +249,11 @@ fn is_sound(triangle: &[Vec3; 3]) -> bool {
     area > 0.0 && area.is_finite()
 }
 
-fn padded_box(triangle: &[Vec3; 3]) -> Aabb {
+fn padded_box(triangle: &[Vec3; 3]) -> Bounds {
     let [a, b, c] = triangle.map(Vec3A::from);
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let pad = Vec3A::splat(PADDING * low.abs().max(high.abs()).max_element());
-    Aabb::new(low - pad, high + pad)
+    Bounds { low: low - pad, high: high + pad }
 }
 
 /// Distance at which a ray is within a box: 0 if it starts there, none if it gets there after `t_max` or never.

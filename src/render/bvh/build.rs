@@ -1,204 +1,122 @@
-//! From boxes to a wide tree: `obvhs` builds and optimizes a binary tree (PLOC, Meister & Bittner 2018, and parallel
-//! reinsertion, Meister & Bittner 2018), which is then cut into wide nodes and leaves at the least expected cost by the
-//! dynamic programme of Ylitie, Karras & Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed
-//! Wide BVHs", section 3.1.
+//! From boxes to a wide tree. The boxes are split from the top into chunks; each chunk becomes wide subtrees by itself, some
+//! at a time, so that binary trees exist for few boxes only. Time is in proportion to n log n, whatever the boxes are.
 
-use glam::Vec3A;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use rayon::prelude::*;
 
-use super::tree::{Node, PADDING, Tree, WIDTH};
+use super::{
+    binary::{Binary, deepest},
+    bounds::Bounds,
+    cut::{Leaves, Pieces, cut},
+    split::split,
+    tree::{self, Tree},
+};
 
-/// What leaves may hold and cost.
-#[derive(Clone, Copy)]
-pub(super) struct Leaves {
-    /// Most boxes in a leaf.
-    pub(super) capacity: usize,
-    /// Boxes that are tested at the price of one.
-    pub(super) packet: usize,
-    /// Price of a packet; a node costs 1.
-    pub(super) price: f32,
+/// Boxes of a chunk, at most.
+const CHUNK: usize = 1 << 15;
+
+/// Subtrees that a chunk leaves to be joined with those of other chunks: a tree over them is better than one over chunks,
+/// for a chunk is as large as its largest box.
+const LOOSE: usize = 64;
+
+/// Prices of the tree above.
+const ABOVE: Leaves = Leaves { capacity: 1, packet: 1, price: 1.0 };
+
+/// How the boxes were split into chunks.
+enum Top {
+    Chunk(usize),
+    Split(Box<[Top; 2]>),
 }
 
-/// Builds the tree over `boxes`. `emit` stores the boxes of a leaf and answers with its child field.
-pub(super) fn build(boxes: &[Aabb], leaves: Leaves, emit: impl FnMut(&[u32]) -> u32) -> Tree {
-    if boxes.is_empty() {
-        return Tree { nodes: Vec::new(), depth: 0 };
-    }
-    let binary = binary_tree(boxes);
-    let costs = costs(&binary, leaves);
-    Cutter { binary: &binary, costs: &costs, leaves, emit, prims: Vec::new() }.cut()
-}
-
-fn binary_tree(boxes: &[Aabb]) -> Bvh2 {
-    let boxes: Vec<Aabb> = boxes.iter().enumerate().map(|(i, b)| distinct(b, i as u32)).collect();
-    let boxes = &boxes;
-    let indices = (0..boxes.len() as u32).collect();
-    let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
-        PlocSearchDistance::Medium,
-        boxes,
-        indices,
-        SortPrecision::U64,
-        3,
-    );
-    ReinsertionOptimizer::default().run(&mut tree, 0.1, None);
-    tree
-}
-
-/// The box, a little larger in a way of its own: among coincident boxes, PLOC would find one pair of nearest neighbours
-/// a pass and take quadratic time.
-fn distinct(b: &Aabb, index: u32) -> Aabb {
-    let grow = PADDING * b.min.abs().max(b.max.abs()).max_element();
-    let part = |salt: u32| {
-        let mut h = (index ^ salt.wrapping_mul(0x9E37_79B9)).wrapping_mul(0x85EB_CA6B);
-        h = (h ^ (h >> 13)).wrapping_mul(0xC2B2_AE35);
-        grow * ((h >> 16) as f32 / 65536.0)
-    };
-    Aabb::new(b.min - Vec3A::new(part(1), part(2), part(3)), b.max + Vec3A::new(part(4), part(5), part(6)))
-}
-
-/// For a subtree: its boxes, and the least cost of showing it as at most 1, 2, … `WIDTH` - 1 places of a wide node.
-#[derive(Clone)]
-struct Cost {
-    boxes: u32,
-    places: [f32; WIDTH - 1],
-}
-
-impl Leaves {
-    fn cost(self, area: f32, boxes: u32) -> f32 {
-        if boxes as usize > self.capacity {
-            return f32::INFINITY;
+impl Top {
+    /// Splits `members` in place, `left` levels by cost.
+    fn new(boxes: &[Bounds], members: &mut [u32], left: u32) -> Self {
+        if members.len() <= CHUNK {
+            return Self::Chunk(members.len());
         }
-        area * self.price * (boxes as usize).div_ceil(self.packet) as f32
+        let middle = if left > 0 { split(boxes, members) } else { members.len() / 2 };
+        let (one, other) = members.split_at_mut(middle);
+        let below = left.saturating_sub(1);
+        let (one, other) = rayon::join(|| Self::new(boxes, one, below), || Self::new(boxes, other, below));
+        Self::Split(Box::new([one, other]))
     }
-}
 
-/// The best split of `places` between two subtrees, and what it costs.
-fn distribute(left: &Cost, right: &Cost, places: usize) -> (usize, f32) {
-    let mut best = (1, f32::INFINITY);
-    for k in 1..places {
-        let cost = left.places[k - 1] + right.places[places - k - 1];
-        if cost < best.1 {
-            best = (k, cost);
+    /// Sizes of the chunks, in order.
+    fn sizes(self, sizes: &mut Vec<usize>) {
+        match self {
+            Self::Chunk(size) => sizes.push(size),
+            Self::Split(below) => below.into_iter().for_each(|top| top.sizes(sizes)),
         }
     }
-    best
 }
 
-fn costs(binary: &Bvh2, leaves: Leaves) -> Vec<Cost> {
-    let mut costs = vec![Cost { boxes: 0, places: [0.0; WIDTH - 1] }; binary.nodes.len()];
-    let mut order = vec![0u32];
-    let mut next = 0;
-    while let Some(&index) = order.get(next) {
-        let node = &binary.nodes[index as usize];
-        if !node.is_leaf() {
-            order.extend([node.first_index, node.first_index + 1]);
-        }
-        next += 1;
-    }
-    for &index in order.iter().rev() {
-        let node = &binary.nodes[index as usize];
-        let area = node.aabb().half_area();
-        costs[index as usize] = if node.is_leaf() {
-            Cost { boxes: node.prim_count, places: [leaves.cost(area, node.prim_count); WIDTH - 1] }
-        } else {
-            let (left, right) = (&costs[node.first_index as usize], &costs[node.first_index as usize + 1]);
-            let boxes = left.boxes + right.boxes;
-            let inner = distribute(left, right, WIDTH).1 + area;
-            let mut places = [leaves.cost(area, boxes).min(inner); WIDTH - 1];
-            for i in 2..WIDTH {
-                places[i - 1] = places[i - 2].min(distribute(left, right, i).1);
-            }
-            Cost { boxes, places }
-        };
-    }
-    costs
-}
-
-struct Cutter<'a, F> {
-    binary: &'a Bvh2,
-    costs: &'a [Cost],
+/// Builds the tree over `boxes`. `store` appends the units of a leaf with these boxes; `take` gets all units in their
+/// order, some at a time.
+pub(super) fn build<U: Send>(
+    boxes: &[Bounds],
     leaves: Leaves,
-    emit: F,
-    prims: Vec<u32>,
+    store: impl Fn(&[u32], &mut Vec<U>) + Sync,
+    mut take: impl FnMut(Vec<U>),
+) -> Tree {
+    if boxes.is_empty() {
+        return Tree::EMPTY;
+    }
+    let mut members: Vec<u32> = (0..boxes.len() as u32).collect();
+    let mut sizes = Vec::new();
+    Top::new(boxes, &mut members, deepest(boxes.len())).sizes(&mut sizes);
+    let (mut all, mut units) = (Pieces { nodes: Vec::new(), depth: 0, roots: Vec::new() }, 0);
+    let mut chunks = slices(&mut members, &sizes);
+    for batch in chunks.chunks_mut(2 * rayon::current_num_threads()) {
+        let made: Vec<_> = batch.par_iter_mut().map(|chunk| pieces(boxes, chunk, leaves, &store)).collect();
+        for (mut pieces, stored) in made {
+            let nodes = all.nodes.len();
+            pieces.nodes.iter_mut().for_each(|node| node.relink(|child| tree::moved(child, nodes, units)));
+            all.nodes.append(&mut pieces.nodes);
+            all.roots.extend(pieces.roots.iter().map(|&(child, b)| (tree::moved(child, nodes, units), b)));
+            all.depth = all.depth.max(pieces.depth);
+            units += stored.len();
+            take(stored);
+        }
+    }
+    join(all)
 }
 
-impl<F: FnMut(&[u32]) -> u32> Cutter<'_, F> {
-    fn cut(mut self) -> Tree {
-        let mut tree = Tree { nodes: vec![Node::empty()], depth: 1 };
-        if self.is_leaf(0) {
-            self.fill(&mut tree, 0, 0, 0);
-            return tree;
-        }
-        // Binary node, wide node, depth.
-        let mut open = vec![(0u32, 0u32, 1usize)];
-        while let Some((index, wide, depth)) = open.pop() {
-            tree.depth = tree.depth.max(depth);
-            let mut members = Vec::with_capacity(WIDTH);
-            self.members_of_children(index, WIDTH, &mut members);
-            for (place, &member) in members.iter().enumerate() {
-                if self.is_leaf(member) {
-                    self.fill(&mut tree, wide, place, member);
-                } else {
-                    let child = tree.nodes.len() as u32;
-                    tree.nodes.push(Node::empty());
-                    self.set(&mut tree, wide, place, member, child);
-                    open.push((member, child, depth + 1));
-                }
-            }
-        }
-        tree
+/// The list in parts of these sizes.
+fn slices<'a>(mut list: &'a mut [u32], sizes: &[usize]) -> Vec<&'a mut [u32]> {
+    let mut slices = Vec::with_capacity(sizes.len());
+    for &size in sizes {
+        let (slice, rest) = list.split_at_mut(size);
+        slices.push(slice);
+        list = rest;
     }
+    slices
+}
 
-    /// Whether a subtree that takes one place is a leaf.
-    fn is_leaf(&self, index: u32) -> bool {
-        let node = &self.binary.nodes[index as usize];
-        let cost = &self.costs[index as usize];
-        // The area of boxes beyond 10¹⁹ overflows: then all costs are infinite, and capacity alone decides.
-        let fits = cost.boxes as usize <= self.leaves.capacity;
-        node.is_leaf() || (fits && self.leaves.cost(node.aabb().half_area(), cost.boxes) <= cost.places[0])
-    }
+/// Wide subtrees over some of the boxes, and what their leaves refer to.
+fn pieces<U>(
+    boxes: &[Bounds],
+    members: &mut [u32],
+    leaves: Leaves,
+    store: &impl Fn(&[u32], &mut Vec<U>),
+) -> (Pieces, Vec<U>) {
+    let mut units = Vec::with_capacity(members.len().div_ceil(leaves.packet));
+    let pieces = cut(&Binary::split(boxes, members), leaves, LOOSE, |members| {
+        let first = units.len();
+        store(members, &mut units);
+        tree::leaf(first, units.len() - first)
+    });
+    (pieces, units)
+}
 
-    /// The subtrees that fill `places` places below the inner node `index`.
-    fn members_of_children(&self, index: u32, places: usize, members: &mut Vec<u32>) {
-        let left = self.binary.nodes[index as usize].first_index;
-        let (k, _) = distribute(&self.costs[left as usize], &self.costs[left as usize + 1], places);
-        self.members(left, k, members);
-        self.members(left + 1, places - k, members);
+/// One tree over all roots.
+fn join(Pieces { mut nodes, depth, roots }: Pieces) -> Tree {
+    if let [(root, _)] = roots[..] {
+        return Tree::new(nodes, root, depth);
     }
-
-    fn members(&self, index: u32, mut places: usize, members: &mut Vec<u32>) {
-        let cost = &self.costs[index as usize].places;
-        while places > 1 && cost[places - 2] <= cost[places - 1] {
-            places -= 1;
-        }
-        if places == 1 {
-            members.push(index);
-        } else {
-            self.members_of_children(index, places, members);
-        }
-    }
-
-    fn fill(&mut self, tree: &mut Tree, wide: u32, place: usize, member: u32) {
-        self.prims.clear();
-        let mut open = vec![member];
-        while let Some(index) = open.pop() {
-            let node = &self.binary.nodes[index as usize];
-            if node.is_leaf() {
-                let range = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-                self.prims.extend_from_slice(&self.binary.primitive_indices[range]);
-            } else {
-                open.extend([node.first_index + 1, node.first_index]);
-            }
-        }
-        let child = (self.emit)(&self.prims);
-        self.set(tree, wide, place, member, child);
-    }
-
-    fn set(&self, tree: &mut Tree, wide: u32, place: usize, member: u32, child: u32) {
-        let aabb = self.binary.nodes[member as usize].aabb();
-        tree.nodes[wide as usize].set(place, aabb.min.to_array(), aabb.max.to_array(), child);
-    }
+    let boxes: Vec<Bounds> = roots.iter().map(|root| root.1).collect();
+    let mut above = cut(&Binary::joined(&boxes), ABOVE, 1, |members| tree::leaf(members[0] as usize, 1));
+    let first = nodes.len();
+    let link = |child| tree::first_unit(child).map_or(tree::moved(child, first, 0), |root| roots[root].0);
+    above.nodes.iter_mut().for_each(|node| node.relink(link));
+    nodes.append(&mut above.nodes);
+    Tree::new(nodes, link(above.roots[0].0), depth + above.depth)
 }

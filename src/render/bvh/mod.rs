@@ -2,19 +2,23 @@
 //!
 //! Meshes that are placed once become triangles in world space under one tree. Meshes that are placed many times keep
 //! one tree of their own, and a top level finds the placements. The shapes of lights have a tree apart, so that moving a
-//! light leaves all others as they are ([`Geometry::build_after`]). All trees are eight children wide; `obvhs` builds the
-//! binary trees that they are cut from. Traversal is in f32 around a centre near the detail of the scene and is
-//! watertight (Woop, Benthin & Wald 2013); the hit is then computed again in f64.
+//! light leaves all others as they are ([`Geometry::build_after`]). All trees are eight children wide. Traversal is in f32
+//! around a centre near the detail of the scene and is watertight (Woop, Benthin & Wald 2013); the hit is then computed
+//! again in f64.
 //!
 //! The same vertices that rays meet are what [`Geometry::vertices`] gives, so points on them are on the surface to the
 //! last digits of f64.
 
 mod assemble;
 mod bake;
+mod binary;
 mod blas;
+mod bounds;
 mod build;
+mod cut;
 mod lanes;
 mod offset;
+mod split;
 mod stack;
 #[cfg(test)]
 mod tests;
@@ -24,7 +28,7 @@ mod triangle;
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, DVec3};
 
 use crate::ray::Ray;
 use blas::{Blas, Candidate};
@@ -32,15 +36,6 @@ use tlas::Tlas;
 
 pub use assemble::Previous;
 pub use offset::{Anchor, offset_origin, segment};
-
-/// Triangles of a mesh.
-#[derive(Clone, Debug, Default)]
-pub struct MeshGeometry {
-    /// Vertices in the mesh's space.
-    pub positions: Vec<Vec3>,
-    /// Three vertices each. Triangles with missing or infinite vertices or without area are never met.
-    pub triangles: Vec<[u32; 3]>,
-}
 
 /// One placement of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec3A};
-use obvhs::aabb::Aabb;
 
 use super::blas::{Blas, enter};
-use super::build::{self, Leaves};
-use super::tree::{self, PADDING, Slabs, Tree};
+use super::bounds::Bounds;
+use super::build;
+use super::cut::Leaves;
+use super::tree::{PADDING, Slabs, Tree};
 
 /// Entering an instance costs about as much as a few nodes.
 const LEAVES: Leaves = Leaves { capacity: 1, packet: 1, price: 8.0 };
@@ -60,14 +61,12 @@ impl Tlas {
             high = high.max(bounds[i].1);
         }
         let center = if sound.is_empty() { DVec3::ZERO } else { (low + high) * 0.5 };
-        let boxes: Vec<Aabb> =
+        let boxes: Vec<Bounds> =
             sound.iter().map(|&i| padded_box(bounds[i].0 - center, bounds[i].1 - center)).collect();
         let mut order = Vec::with_capacity(placed.len());
-        let tree = build::build(&boxes, LEAVES, |prims| {
-            let first = order.len();
-            order.extend(prims.iter().map(|&p| sound[p as usize]));
-            tree::leaf(first, prims.len())
-        });
+        let store =
+            |boxes: &[u32], units: &mut Vec<usize>| units.extend(boxes.iter().map(|&b| sound[b as usize]));
+        let tree = build::build(&boxes, LEAVES, store, |units| order.extend(units));
         // No leaf refers to these, but their vertices can be asked for.
         order.extend(unsound);
         let mut slots = vec![0; placed.len()];
@@ -84,7 +83,7 @@ impl Tlas {
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.tree.nodes.is_empty()
+        self.tree.is_empty()
     }
 
     /// Corners of the bounds; low above high if there is nothing.
@@ -110,7 +109,7 @@ impl Tlas {
         t_max: f64,
         mut visit: impl FnMut(&Placed) -> f64,
     ) {
-        if self.tree.nodes.is_empty() {
+        if self.tree.is_empty() {
             return;
         }
         let origin = origin - self.center;
@@ -132,8 +131,8 @@ fn is_finite(bounds: &(DVec3, DVec3)) -> bool {
     bounds.0.is_finite() && bounds.1.is_finite()
 }
 
-fn padded_box(low: DVec3, high: DVec3) -> Aabb {
+fn padded_box(low: DVec3, high: DVec3) -> Bounds {
     let (low, high) = (Vec3A::from(low.as_vec3()), Vec3A::from(high.as_vec3()));
     let pad = Vec3A::splat(PADDING * low.abs().max(high.abs()).max_element());
-    Aabb::new(low - pad, high + pad)
+    Bounds { low: low - pad, high: high + pad }
 }

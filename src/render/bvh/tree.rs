@@ -4,6 +4,7 @@
 
 use glam::Vec3A;
 
+use super::bounds::Bounds;
 use super::lanes::Eight;
 use super::stack::Space;
 
@@ -34,13 +35,28 @@ impl Node {
         Self { sides: [low, low, low, high, high, high], children: [NONE; WIDTH] }
     }
 
-    pub(super) fn set(&mut self, place: usize, low: [f32; 3], high: [f32; 3], child: u32) {
+    pub(super) fn set(&mut self, place: usize, bounds: Bounds, child: u32) {
         for axis in 0..3 {
-            self.sides[axis][place] = low[axis];
-            self.sides[axis + 3][place] = high[axis];
+            self.sides[axis][place] = bounds.low[axis];
+            self.sides[axis + 3][place] = bounds.high[axis];
         }
         self.children[place] = child;
     }
+
+    /// Replaces child fields.
+    pub(super) fn relink(&mut self, replace: impl Fn(u32) -> u32) {
+        self.children.iter_mut().filter(|child| **child != NONE).for_each(|child| *child = replace(*child));
+    }
+}
+
+/// The child field after nodes and units were put behind others.
+pub(super) fn moved(child: u32, nodes: usize, units: usize) -> u32 {
+    child + if child & LEAF == 0 { nodes } else { units } as u32
+}
+
+/// The index of the first unit, where the child field is that of a leaf.
+pub(super) fn first_unit(child: u32) -> Option<usize> {
+    (child & LEAF != 0).then_some((child & INDEX) as usize)
 }
 
 /// The child field for the leaf with `count` units from `first`.
@@ -53,6 +69,8 @@ pub(super) fn leaf(first: usize, count: usize) -> u32 {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tree {
     pub(super) nodes: Vec<Node>,
+    /// Child field of the root.
+    root: u32,
     /// Nodes on the longest way down.
     pub(super) depth: usize,
 }
@@ -114,16 +132,28 @@ fn entry(distance: f32, child: u32) -> u64 {
 }
 
 impl Tree {
+    /// A tree without boxes.
+    pub(super) const EMPTY: Self = Self { nodes: Vec::new(), root: NONE, depth: 0 };
+
+    /// The tree below the child field `root`.
+    pub(super) fn new(nodes: Vec<Node>, root: u32, depth: usize) -> Self {
+        Self { nodes, root, depth }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.root == NONE
+    }
+
     /// Calls `visit(first, count, limit)` for the leaves that the ray meets, nearer boxes first. `visit` answers with
     /// the new limit, which must not grow; a negative one ends the walk.
     #[inline(always)]
     pub(super) fn walk(&self, ray: &Slabs, mut limit: f32, mut visit: impl FnMut(u32, u32, f32) -> f32) {
-        if self.nodes.is_empty() {
+        if self.is_empty() {
             return;
         }
         let mut space = Space::new(self.depth * (WIDTH - 1) + 1);
         let mut stack = space.stack();
-        stack.push(entry(0.0, 0));
+        stack.push(entry(0.0, self.root));
         while let Some(top) = stack.pop() {
             if f32::from_bits((top >> 32) as u32) > limit {
                 continue;

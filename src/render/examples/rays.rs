@@ -7,13 +7,13 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::io::{BufWriter, Write};
-use std::sync::Arc;
 use std::time::Instant;
 
-use ajar_render::bvh::{Geometry, InstanceGeometry, MeshGeometry, Met, offset_origin};
+use ajar_render::bvh::{Geometry, InstanceGeometry, Met, offset_origin};
 use ajar_render::math::Frame;
 use ajar_render::ray::Ray;
 use ajar_render::rng::{Purpose, Rng};
+use ajar_scene::Mesh;
 use glam::{DAffine3, DVec3, Vec3};
 
 const RAYS: usize = 400_000;
@@ -26,8 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let file = std::env::args().nth(1).ok_or("usage: rays FILE")?;
     let mesh = room();
     let started = Instant::now();
-    let geometry =
-        Geometry::build(&[Arc::new(mesh.clone())], &[InstanceGeometry::solid(0, DAffine3::IDENTITY)]);
+    let geometry = Geometry::build(&[&mesh], &[InstanceGeometry::solid(0, DAffine3::IDENTITY)]);
     let mut out = std::io::stdout();
     writeln!(out, "triangles {} built in {:.2?}", mesh.triangles.len(), started.elapsed())?;
     writeln!(out, "bytes per triangle {:.1}", geometry.memory() as f64 / mesh.triangles.len() as f64)?;
@@ -119,8 +118,8 @@ fn write(
 }
 
 /// Four walls, and furniture from boxes, turned parts, cloth and leaves.
-fn room() -> MeshGeometry {
-    let mut mesh = MeshGeometry::default();
+fn room() -> Mesh {
+    let mut mesh = Mesh::default();
     let mut rng = Rng::new(2, Purpose::Test, 0, 0);
     cuboid(&mut mesh, DVec3::ZERO, SIZE);
     for i in 0..4 {
@@ -145,7 +144,7 @@ fn room() -> MeshGeometry {
     mesh
 }
 
-fn grid(mesh: &mut MeshGeometry, columns: u32, rows: u32, point: impl Fn(f64, f64) -> DVec3) {
+fn grid(mesh: &mut Mesh, columns: u32, rows: u32, point: impl Fn(f64, f64) -> DVec3) {
     let first = mesh.positions.len() as u32;
     for j in 0..=rows {
         for i in 0..=columns {
@@ -160,7 +159,7 @@ fn grid(mesh: &mut MeshGeometry, columns: u32, rows: u32, point: impl Fn(f64, f6
     }
 }
 
-fn cuboid(mesh: &mut MeshGeometry, low: DVec3, size: DVec3) {
+fn cuboid(mesh: &mut Mesh, low: DVec3, size: DVec3) {
     let first = mesh.positions.len() as u32;
     let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
     mesh.positions.extend((0..8).map(|i| (low + size * corner(i)).as_vec3()));
@@ -171,14 +170,14 @@ fn cuboid(mesh: &mut MeshGeometry, low: DVec3, size: DVec3) {
 }
 
 /// A turned part around the vertical through `at`.
-fn turned(mesh: &mut MeshGeometry, at: DVec3, height: f64, detail: u32, radius: impl Fn(f64) -> f64) {
+fn turned(mesh: &mut Mesh, at: DVec3, height: f64, detail: u32, radius: impl Fn(f64) -> f64) {
     grid(mesh, detail, detail, |u, v| {
         let (sin, cos) = (TAU * u).sin_cos();
         at + DVec3::new(radius(v) * cos, radius(v) * sin, height * v)
     });
 }
 
-fn table(mesh: &mut MeshGeometry, at: DVec3, rng: &mut Rng) {
+fn table(mesh: &mut Mesh, at: DVec3, rng: &mut Rng) {
     cuboid(mesh, at + DVec3::new(-0.5, -0.35, 0.7), DVec3::new(1.0, 0.7, 0.04));
     for (x, y) in [(-0.45, -0.3), (0.45, -0.3), (-0.45, 0.3), (0.45, 0.3)] {
         turned(mesh, at + DVec3::new(x, y, 0.0), 0.7, 32, |v| 0.03 + 0.012 * (20.0 * v).sin());
@@ -190,7 +189,7 @@ fn table(mesh: &mut MeshGeometry, at: DVec3, rng: &mut Rng) {
     }
 }
 
-fn shelf(mesh: &mut MeshGeometry, at: DVec3, rng: &mut Rng) {
+fn shelf(mesh: &mut Mesh, at: DVec3, rng: &mut Rng) {
     for i in 0..6 {
         cuboid(mesh, at + DVec3::Z * (0.4 * f64::from(i)), DVec3::new(2.0, 0.3, 0.025));
         let mut x = 0.02;
@@ -202,7 +201,7 @@ fn shelf(mesh: &mut MeshGeometry, at: DVec3, rng: &mut Rng) {
     }
 }
 
-fn plant(mesh: &mut MeshGeometry, at: DVec3, rng: &mut Rng) {
+fn plant(mesh: &mut Mesh, at: DVec3, rng: &mut Rng) {
     turned(mesh, at, 0.3, 48, |v| 0.12 + 0.05 * v);
     for _ in 0..1500 {
         let stem = around(DVec3::Z, rng) * (0.3 + 0.5 * rng.f64()) + at + DVec3::Z * 0.3;

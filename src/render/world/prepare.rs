@@ -14,7 +14,7 @@ use super::{
     previous::{Previous, Tangents, same_shape},
 };
 use crate::{
-    bvh::{self, Geometry, InstanceGeometry, MeshGeometry},
+    bvh::{self, Geometry, InstanceGeometry},
     camera,
     light::tessellate,
     material,
@@ -168,10 +168,8 @@ fn instances(scene: &Scene, default_material: Id<Material>) -> Vec<Instance> {
 
 /// What rays meet. Meshes from number `solids` on are the shapes of lights.
 fn geometry(scene: &Scene, instances: &[Instance], solids: usize, old: Option<&World>) -> Arc<Geometry> {
-    let mut used = vec![false; scene.meshes.len()];
-    instances.iter().for_each(|instance| used[instance.mesh.index()] = true);
     let placements = placements_of(instances, solids);
-    let same = old.map(|old| same_shapes(scene, &used, &old.scene)).unwrap_or_default();
+    let same = old.map(|old| same_shapes(scene, instances, &old.scene)).unwrap_or_default();
     let old_placements = old.map(|old| placements_of(&old.instances, old.solids)).unwrap_or_default();
     let previous =
         old.map(|old| bvh::Previous { geometry: &old.geometry, instances: &old_placements, same: &same });
@@ -180,11 +178,7 @@ fn geometry(scene: &Scene, instances: &[Instance], solids: usize, old: Option<&W
     {
         return Arc::clone(&old.geometry);
     }
-    let shape = |(mesh, used): (&Mesh, bool)| {
-        let geometry = MeshGeometry { positions: mesh.positions.clone(), triangles: mesh.triangles.clone() };
-        Arc::new(if used { geometry } else { MeshGeometry::default() })
-    };
-    let meshes: Vec<Arc<MeshGeometry>> = scene.meshes.iter().zip(used).map(shape).collect();
+    let meshes: Vec<&Mesh> = scene.meshes.iter().collect();
     Arc::new(Geometry::build_after(&meshes, &placements, previous))
 }
 
@@ -198,9 +192,11 @@ fn placements_of(instances: &[Instance], solids: usize) -> Vec<InstanceGeometry>
 }
 
 /// For each mesh that is used whether the old scene has the same shape at that number.
-fn same_shapes(scene: &Scene, used: &[bool], old: &Scene) -> Vec<bool> {
+fn same_shapes(scene: &Scene, instances: &[Instance], old: &Scene) -> Vec<bool> {
+    let mut used = vec![false; scene.meshes.len()];
+    instances.iter().for_each(|instance| used[instance.mesh.index()] = true);
     let meshes: Vec<_> = scene.meshes.ids().zip(used).collect();
-    let is_same = |(id, &used): (Id<Mesh>, &bool)| {
+    let is_same = |(id, used): (Id<Mesh>, bool)| {
         used && old.meshes.get(id).is_some_and(|old| same_shape(&scene.meshes[id], old))
     };
     meshes.into_par_iter().map(is_same).collect()

@@ -2,11 +2,10 @@
 
 use std::cell::Cell;
 
+use ajar_scene::Mesh;
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::{
-    Geometry, MeshGeometry, blocked, direction, icosphere, in_cube, nearest, placed, rng, soup, world,
-};
+use super::{Geometry, blocked, direction, icosphere, in_cube, nearest, placed, rng, soup, world};
 use crate::bvh::Hit;
 use crate::ray::Ray;
 
@@ -93,11 +92,12 @@ fn accept_decides_which_hits_count() {
 
 #[test]
 fn degenerate_triangles_and_rays_meet_nothing() {
-    let mut mesh = MeshGeometry {
+    let mut mesh = Mesh {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::X * 3.0, Vec3::NAN, Vec3::INFINITY, Vec3::splat(f32::MAX)],
         triangles: vec![[0, 0, 0], [0, 1, 1], [0, 1, 2], [0, 1, 3], [1, 0, 4], [0, 1, 77], [0, 1, u32::MAX]],
+        ..Mesh::default()
     };
-    let empty = [world(MeshGeometry::default()), world(mesh.clone()), Geometry::build(&[], &[])];
+    let empty = [world(Mesh::default()), world(mesh.clone()), Geometry::build(&[], &[])];
     let mut rng = rng(1);
     for geometry in &empty {
         for _ in 0..1000 {
@@ -125,8 +125,11 @@ fn degenerate_triangles_and_rays_meet_nothing() {
 
 #[test]
 fn copies_without_end_do_not_harm() {
-    let mut mesh =
-        MeshGeometry { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]; 20_000] };
+    let mut mesh = Mesh {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        triangles: vec![[0, 1, 2]; 20_000],
+        ..Mesh::default()
+    };
     // Each of these holds the next, so boxes cannot be told apart by place.
     for k in 0..200 {
         let size = 2f32.powf(-0.5 * k as f32);

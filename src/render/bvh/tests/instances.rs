@@ -1,7 +1,5 @@
 //! Placements.
 
-use std::sync::Arc;
-
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::{Geometry, InstanceGeometry, blocked, direction, icosphere, in_cube, lumpy, nearest, rng};
@@ -21,7 +19,7 @@ fn maps() -> Vec<DAffine3> {
 
 #[test]
 fn placements_under_the_top_level_look_like_baked_ones() {
-    let meshes = [Arc::new(icosphere(3)), Arc::new(lumpy(3))];
+    let meshes = [&icosphere(3), &lumpy(3)];
     let instances: Vec<_> = maps()
         .iter()
         .flat_map(|&to_world| (0..3).map(move |mesh| InstanceGeometry::solid(mesh, to_world)))
@@ -59,13 +57,12 @@ fn placements_under_the_top_level_look_like_baked_ones() {
 fn many_placements_cost_the_memory_of_one_mesh() {
     let mesh = lumpy(7);
     assert!(mesh.triangles.len() > 100_000);
-    let single =
-        Geometry::build(&[Arc::new(mesh.clone())], &[InstanceGeometry::solid(0, DAffine3::IDENTITY)]);
+    let single = Geometry::build(&[&mesh], &[InstanceGeometry::solid(0, DAffine3::IDENTITY)]);
     let mut rng = rng(4);
     let instances: Vec<_> = (0..10_000)
         .map(|_| InstanceGeometry::solid(0, DAffine3::from_translation(in_cube(&mut rng) * 100.0)))
         .collect();
-    let many = Geometry::build(&[Arc::new(mesh)], &instances);
+    let many = Geometry::build(&[&mesh], &instances);
     let extra = many.memory() - single.memory();
     assert!(extra < 10_000 * 350, "{} and {extra} bytes", single.memory());
     assert!(single.memory() < 131_072 * 110, "{}", single.memory());

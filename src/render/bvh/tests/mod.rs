@@ -6,11 +6,10 @@ mod lanes;
 mod rounding;
 mod watertight;
 
-use std::sync::Arc;
-
+use ajar_scene::Mesh;
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::{Geometry, Hit, InstanceGeometry, MeshGeometry};
+use super::{Geometry, Hit, InstanceGeometry};
 use crate::ray::Ray;
 use crate::rng::{Purpose, Rng};
 
@@ -47,7 +46,7 @@ fn blocked(geometry: &Geometry, ray: &Ray) -> bool {
 }
 
 /// A closed mesh around the origin: an octahedron whose faces are split `levels` times and pushed to `radius`.
-fn closed(levels: u32, radius: impl Fn(DVec3) -> f64) -> MeshGeometry {
+fn closed(levels: u32, radius: impl Fn(DVec3) -> f64) -> Mesh {
     let mut points: Vec<DVec3> = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|a| [a, -a]).collect();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
     for (x, y, z) in (0..8).map(|i| (i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2))) {
@@ -68,31 +67,32 @@ fn closed(levels: u32, radius: impl Fn(DVec3) -> f64) -> MeshGeometry {
         }
         triangles = finer;
     }
-    MeshGeometry { positions: points.iter().map(|p| (*p * radius(*p)).as_vec3()).collect(), triangles }
+    let positions = points.iter().map(|p| (*p * radius(*p)).as_vec3()).collect();
+    Mesh { positions, triangles, ..Mesh::default() }
 }
 
-fn icosphere(levels: u32) -> MeshGeometry {
+fn icosphere(levels: u32) -> Mesh {
     closed(levels, |_| 1.0)
 }
 
 /// A closed mesh with slivers and folds that the origin still sees entirely.
-fn lumpy(levels: u32) -> MeshGeometry {
+fn lumpy(levels: u32) -> Mesh {
     closed(levels, |p| {
         1.0 + 0.3 * (9.0 * p.x).sin() * (7.0 * p.y).cos() + 0.2 * (31.0 * p.z + 3.0 * p.x).sin()
     })
 }
 
-fn cube() -> MeshGeometry {
+fn cube() -> Mesh {
     let positions =
         (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0);
     let quads = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
     let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
-    MeshGeometry { positions: positions.collect(), triangles }
+    Mesh { positions: positions.collect(), triangles, ..Mesh::default() }
 }
 
 /// Random triangles of many sizes in the unit cube.
-fn soup(count: usize, size: f64, rng: &mut Rng) -> MeshGeometry {
-    let mut mesh = MeshGeometry::default();
+fn soup(count: usize, size: f64, rng: &mut Rng) -> Mesh {
+    let mut mesh = Mesh::default();
     for i in 0..count as u32 {
         let center = in_cube(rng);
         let size = size * rng.f64().powi(3);
@@ -103,7 +103,7 @@ fn soup(count: usize, size: f64, rng: &mut Rng) -> MeshGeometry {
 }
 
 /// One mesh, placed once; with `own`, as a placement under the top level.
-fn placed(mesh: MeshGeometry, to_world: DAffine3, own: bool) -> Geometry {
+fn placed(mesh: Mesh, to_world: DAffine3, own: bool) -> Geometry {
     let mut instances = vec![InstanceGeometry::solid(0, to_world)];
     if own {
         // A second placement, out of the way, so that the mesh counts as placed many times.
@@ -111,9 +111,9 @@ fn placed(mesh: MeshGeometry, to_world: DAffine3, own: bool) -> Geometry {
         let away = DAffine3::from_translation(DVec3::splat(100.0 * size)) * to_world;
         instances.push(InstanceGeometry::solid(0, away));
     }
-    Geometry::build_baking(&[Arc::new(mesh)], &instances, if own { 1 } else { usize::MAX }, None)
+    Geometry::build_baking(&[&mesh], &instances, if own { 1 } else { usize::MAX }, None)
 }
 
-fn world(mesh: MeshGeometry) -> Geometry {
+fn world(mesh: Mesh) -> Geometry {
     placed(mesh, DAffine3::IDENTITY, false)
 }

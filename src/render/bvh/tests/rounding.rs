@@ -1,8 +1,9 @@
 //! Rays that leave surfaces.
 
+use ajar_scene::Mesh;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-use super::{Geometry, MeshGeometry, blocked, direction, lumpy, placed, rng, soup};
+use super::{Geometry, blocked, direction, lumpy, placed, rng, soup};
 use crate::bvh::{Anchor, offset_origin, segment};
 use crate::ray::Ray;
 use crate::rng::Rng;
@@ -63,12 +64,13 @@ fn rays_do_not_meet_the_triangle_they_leave() {
 }
 
 /// Two parallel squares, the second `gap` above the first.
-fn walls(gap: f32) -> MeshGeometry {
+fn walls(gap: f32) -> Mesh {
     let square = |z: f32| {
         [Vec3::new(-1.0, -1.0, z), Vec3::new(1.0, -1.0, z), Vec3::new(1.0, 1.0, z), Vec3::new(-1.0, 1.0, z)]
     };
     let positions = square(0.0).into_iter().chain(square(gap)).collect();
-    MeshGeometry { positions, triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]] }
+    let triangles = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+    Mesh { positions, triangles, ..Mesh::default() }
 }
 
 #[test]

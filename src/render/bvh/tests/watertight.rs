@@ -1,13 +1,14 @@
 //! No ray leaves a closed mesh.
 
+use ajar_scene::Mesh;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::{blocked, closed, cube, direction, icosphere, in_cube, lumpy, nearest, placed, rng};
-use crate::bvh::{Geometry, MeshGeometry};
+use crate::bvh::Geometry;
 use crate::ray::Ray;
 
 /// Rays from inside: at random, and aimed at points on edges, at vertices, and from afar along edges.
-fn escapes(geometry: &Geometry, mesh: &MeshGeometry, to_world: DAffine3, rays: u64, core: f64) -> usize {
+fn escapes(geometry: &Geometry, mesh: &Mesh, to_world: DAffine3, rays: u64, core: f64) -> usize {
     let mut rng = rng(rays);
     let mut escaped = 0;
     for i in 0..rays {
