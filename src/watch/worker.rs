@@ -11,7 +11,7 @@ use std::{
 };
 
 use ajar_integrators::{
-    Integrator, Settings, Window, integrators,
+    Integrator, Rounds, Settings, Window, integrators,
     stop::{Reason, StopRules},
 };
 use ajar_render::{World, film::Film};
@@ -97,7 +97,7 @@ impl Work<'_> {
         }
         let mut pace = Pace::new();
         let start = Start { shard: Shard::WHOLE, done: done.clone() };
-        let each_round = |film: &Film, status: &Status| {
+        let each_round = |film: &Film, status: &Status, _: &dyn Rounds| {
             told(status);
             pace.keep(|| self.show(film));
         };
@@ -144,7 +144,8 @@ impl Work<'_> {
         let settings = Settings { window, samples_per_round: 1, ..settings.clone() };
         let rules = StopRules { rounds: Some(1), ..StopRules::default() };
         let start = Start { shard: Shard::WHOLE, done: None };
-        let rendered = session::render(world, eye_paths()?, &settings, &rules, start, self.cancel, |_, _| ());
+        let rendered =
+            session::render(world, eye_paths()?, &settings, &rules, start, self.cancel, |_, _, _| ());
         let is_whole = rendered.reason == Some(Reason::Rounds);
         is_whole.then(|| pixels(&rendered.film, self.job.camera.0.exposure.into()))
     }
