@@ -11,7 +11,11 @@ use ajar_integrators::{
     stats::{Noise, noise},
     stop::{Reason, StopRules, is_noise_check},
 };
-use ajar_render::{World, film::Film, world::prepare};
+use ajar_render::{
+    World,
+    film::Film,
+    world::{PrepareOptions, prepare},
+};
 use ajar_scene::{
     Camera, Cause, Choice, Diagnostic, Id, ImportRequest, Imported, Looked, OutputSettings, Overrides, Scene,
     SceneFile, Severity,
@@ -193,7 +197,7 @@ pub fn prepare_world(
     size: [u32; 2],
     texture_memory: u64,
 ) -> Result<(World, Vec<Diagnostic>), Vec<Diagnostic>> {
-    prepare(scene, &ajar_render::world::PrepareOptions { camera, size, texture_memory })
+    prepare(scene, &PrepareOptions { camera, size, texture_memory })
 }
 
 /// State of a render after a round.

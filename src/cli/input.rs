@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use ajar_scene::{Choice, Diagnostic, Moment, SceneFile, Severity};
 
 use super::arguments::{parse_bytes, parse_fps, parse_number};
-use crate::session::{self, LoadOptions, Loaded};
+use crate::session::{self, LoadOptions, Loaded, Reading};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct Input {
@@ -61,6 +61,18 @@ impl Input {
     pub fn open(&self) -> Result<SceneFile, Vec<Diagnostic>> {
         let choice = self.chosen.choice();
         session::open(&self.file, &self.options(None, &choice))
+    }
+
+    /// As [`Input::open`], read this way.
+    pub fn open_as(&self, reading: &Reading<'_>) -> Result<SceneFile, Vec<Diagnostic>> {
+        let choice = self.chosen.choice();
+        session::open_as(&self.file, &self.options(None, &choice), reading)
+    }
+
+    /// Adds the camera or light that the file lacks.
+    pub fn complete(&self, size: Option<[u32; 2]>, file: &mut SceneFile) {
+        let choice = self.chosen.choice();
+        session::complete(&self.file, &self.options(size, &choice), file);
     }
 
     fn options<'a>(&'a self, size: Option<[u32; 2]>, choice: &'a Choice) -> LoadOptions<'a> {

@@ -1,8 +1,11 @@
 //! The command line: one file a command. Exit codes as in [`Exit`].
 
+mod appearance;
 mod arguments;
+mod block;
 mod checkpoints;
 mod convert;
+mod demand;
 mod diff;
 mod exit;
 mod formats;
@@ -13,12 +16,14 @@ mod job;
 mod log;
 mod merge;
 mod metropolis;
+mod page;
 mod progress;
 mod render;
 mod results;
 mod schema;
 mod signals;
 mod validate;
+mod watch;
 
 use std::{io::Write, process::ExitCode};
 
@@ -46,6 +51,8 @@ struct Cli {
 enum Command {
     /// Render a scene or asset to an OpenEXR image and a PNG preview
     Render(Box<render::Args>),
+    /// Show a scene in the browser and render it again whenever one of its files changes
+    Watch(Box<watch::Args>),
     /// Put together the shards of a render, or make the image of a checkpoint
     Merge(merge::Args),
     /// Show what a file holds: hierarchy, counts, materials, lights, cameras, textures, warnings
@@ -74,6 +81,7 @@ pub fn run() -> ExitCode {
     };
     let exit = match cli.command {
         Command::Render(args) => render::run(&args, cli.log_format),
+        Command::Watch(args) => watch::run(&args, cli.log_format),
         Command::Merge(args) => merge::run(&args, cli.log_format),
         Command::Inspect(args) => inspect::run(&args, cli.log_format),
         Command::Validate(args) => validate::run(&args, cli.log_format),

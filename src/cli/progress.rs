@@ -7,10 +7,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
 use super::log::Format;
-use crate::session::Status;
+use crate::{
+    plan::{fraction, time_left},
+    session::Status,
+};
 
 /// Without a terminal, a plain line this often.
-const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
+pub(super) const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
 
 /// Shows progress on standard error.
 pub(super) struct Progress {
@@ -52,17 +55,7 @@ impl Progress {
     }
 }
 
-/// How much of the render is done, by the rule that is nearest to hold.
-fn fraction(status: &Status, rules: &StopRules) -> f64 {
-    let by_rounds = rules.rounds.map_or(0.0, |n| status.rounds as f64 / n.max(1) as f64);
-    let by_time =
-        rules.time.map_or(0.0, |t| status.elapsed.as_secs_f64() / t.as_secs_f64().max(f64::MIN_POSITIVE));
-    // Noise falls with the square root of the work.
-    let by_noise =
-        rules.noise.zip(status.noise).map_or(0.0, |(limit, n)| (limit / n.typical.max(limit)).powi(2));
-    by_rounds.max(by_time).max(by_noise).clamp(0.0, 1.0)
-}
-
+/// `round 8, 64 samples a pixel, noise 2.1 % (worst tile 5 %), about 40 s left`, of a render of which this much is done.
 fn describe(status: &Status, done: f64) -> String {
     let noise = match status.noise {
         Some(noise) => {
@@ -73,11 +66,6 @@ fn describe(status: &Status, done: f64) -> String {
     let left =
         time_left(status, done).map_or(String::new(), |left| format!(", about {} left", duration(left)));
     format!("round {}, {} samples a pixel, {noise}{left}", status.rounds, status.samples)
-}
-
-fn time_left(status: &Status, done: f64) -> Option<Duration> {
-    let seconds = status.elapsed.as_secs_f64() * (1.0 / done - 1.0);
-    Duration::try_from_secs_f64(seconds).ok().filter(|_| done > 0.0 && done < 1.0)
 }
 
 /// The same for programs.

@@ -11,13 +11,14 @@ use ajar_integrators::{
     features::{Features, features as first_hits},
 };
 use ajar_render::{World, film::Film};
-use ajar_scene::{Camera, Cause, Diagnostic, Severity, parse_duration, parse_percent};
+use ajar_scene::{Camera, Cause, Diagnostic, Severity};
 use glam::DAffine3;
 
 use super::{
     Exit,
-    arguments::{parse_bounds, parse_crop, parse_size},
+    appearance::Appearance,
     checkpoints::Checkpoints,
+    demand::Demand,
     frames::{self, Frames, parse_frames},
     input::Input,
     job::Job,
@@ -45,55 +46,10 @@ pub(super) struct Args {
     /// Image to write; a PNG preview goes beside it [default: <name>.exr in the current folder]
     #[arg(short, long, value_name = "OUT.exr")]
     pub output: Option<PathBuf>,
-    /// Camera to look through [default: the first]
-    #[arg(long, value_name = "NAME")]
-    pub camera: Option<String>,
-    /// Film size in pixels [default: 1280 wide, in the shape of the camera, else 1280x720]
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
-    pub size: Option<[u32; 2]>,
-    /// How to render: ajar, mlt, bdpt or path [default: ajar]
-    #[arg(long, value_name = "NAME")]
-    pub integrator: Option<String>,
-    /// Key of all random numbers
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
-    /// Edges of the longest path [default: 16]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
-    pub max_depth: Option<u32>,
-    /// Threads [default: one a core]; the image does not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
-    /// Stop after N samples a pixel [default: 64 if there is no other stop rule]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub spp: Option<u32>,
-    /// Stop after N rounds
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    pub rounds: Option<u64>,
-    /// Stop after a time: 90s, 10m, 2h
-    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
-    pub time: Option<Duration>,
-    /// Stop when the noise of the typical pixel is this low: 2%
-    #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
-    pub noise: Option<f64>,
-    /// Render only this part, as fractions of the frame: x0,x1,y0,y1
-    #[arg(long, value_name = "X0,X1,Y0,Y1", value_parser = parse_crop, conflicts_with = "pixel_bounds")]
-    pub crop: Option<[f64; 4]>,
-    /// Render only these pixels, the second bounds excluded: x0,x1,y0,y1
-    #[arg(long, value_name = "X0,X1,Y0,Y1", value_parser = parse_bounds)]
-    pub pixel_bounds: Option<[u32; 4]>,
-    /// Layers to add, with commas between: albedo, normal, geometric_normal, depth, position, uv, material_id, object_id,
-    /// variance
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    pub aov: Option<Vec<String>>,
-    /// Tone map of the PNG: agx, aces, neutral or srgb
-    #[arg(long, value_name = "NAME")]
-    pub tone_map: Option<String>,
-    /// Exposure of the PNG in stops
-    #[arg(long, value_name = "EV", allow_negative_numbers = true)]
-    pub exposure: Option<f64>,
-    /// Write colours as 32-bit floats instead of halves
-    #[arg(long)]
-    pub float: bool,
+    #[command(flatten)]
+    pub demand: Demand,
+    #[command(flatten)]
+    pub appearance: Appearance,
     #[command(flatten)]
     pub checkpoints: Checkpoints,
     /// Load and prepare, say what would be rendered, write nothing
@@ -129,10 +85,7 @@ pub(super) fn run(args: &Args, log: Format) -> Exit {
 }
 
 fn execute(args: &Args, log: Format) -> Result<Exit, Vec<Diagnostic>> {
-    if let Some(threads) = args.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
-        pool.map_err(|e| fail(Cause::Resource, format!("cannot start {threads} threads: {e}")))?;
-    }
+    args.demand.start_threads().map_err(|d| vec![d])?;
     let signals = Signals::new().map_err(|e| fail(Cause::System, format!("cannot handle signals: {e}")))?;
     let Some(Frames(frames)) = &args.frames else { return image(args, log, &signals) };
     for &frame in frames {
@@ -212,11 +165,11 @@ impl Ready {
     fn new(args: &Args, log: Format) -> Result<(Self, Option<Done>), Vec<Diagnostic>> {
         let path = &args.input.file;
         let saved = args.checkpoints.open().map_err(|d| vec![d])?;
-        let loaded = args.input.load(args.size)?;
+        let loaded = args.input.load(args.demand.size)?;
         let job = Job::new(args, &loaded, saved.as_ref()).map_err(|d| vec![d])?;
         let Loaded { file, hash: scene_hash } = loaded;
         log.messages(&file.diagnostics, args.least());
-        let name = args.camera.as_deref().or(file.render.camera.as_deref());
+        let name = args.demand.camera.as_deref().or(file.render.camera.as_deref());
         let id = session::choose_camera(&file.scene, name).map_err(|d| vec![d])?;
         let camera = (file.scene.cameras[id.0].clone(), id.1);
         let subject = Subject::new(&scene_hash, &camera, job.size, job.integrator.name(), &job.settings);

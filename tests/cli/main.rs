@@ -17,3 +17,5 @@ mod set;
 mod signals;
 #[cfg(unix)]
 mod usd_environment;
+#[cfg(unix)]
+mod watch;

@@ -1,0 +1,82 @@
+//! What a file holds, as far as it matters whether it is the same as before.
+
+use std::{
+    fs::{File, Metadata},
+    path::Path,
+    time::{Duration, SystemTime},
+};
+
+/// Resolution of the clocks of most file systems, which is that of the kernel, with room to spare.
+const CLOCK: Duration = Duration::from_millis(15);
+/// Of the coarsest, FAT.
+const COARSE_CLOCK: Duration = Duration::from_secs(2);
+
+/// What a file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Content {
+    /// Not the same as anything.
+    Unknown,
+    /// There is no file, or none that can be read.
+    Missing,
+    /// No bytes.
+    Empty,
+    /// Bytes of this hash.
+    Bytes(blake3::Hash),
+}
+
+impl Content {
+    pub fn of(path: &Path) -> Self {
+        read(path).unwrap_or(Self::Missing)
+    }
+
+    /// Whether there is nothing to read.
+    pub fn is_empty(&self) -> bool {
+        matches!(self, Self::Missing | Self::Empty)
+    }
+}
+
+fn read(path: &Path) -> Option<Content> {
+    // Opening a pipe would wait for who writes to it.
+    if !path.metadata().ok()?.is_file() {
+        return None;
+    }
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(File::open(path).ok()?).ok()?;
+    Some(if hasher.count() == 0 { Content::Empty } else { Content::Bytes(hasher.finalize()) })
+}
+
+/// What tells without reading that a file may have changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Stamp {
+    modified: Option<SystemTime>,
+    bytes: u64,
+    number: u64,
+}
+
+impl Stamp {
+    /// That of a file that is there.
+    pub fn of(path: &Path) -> Option<Self> {
+        let data = path.metadata().ok().filter(Metadata::is_file)?;
+        Some(Self { modified: data.modified().ok(), bytes: data.len(), number: number(&data) })
+    }
+
+    /// Whether it may have been written since then.
+    pub fn is_since(&self, time: SystemTime) -> bool {
+        self.modified.is_some_and(|modified| modified + CLOCK > time)
+    }
+
+    /// Whether another change now could leave the same stamp.
+    pub fn is_recent(&self) -> bool {
+        self.is_since(SystemTime::now() - COARSE_CLOCK)
+    }
+}
+
+#[cfg(unix)]
+fn number(data: &Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::ino(data)
+}
+
+#[cfg(not(unix))]
+fn number(_data: &Metadata) -> u64 {
+    0
+}

@@ -1,0 +1,69 @@
+// Moving the camera with the pointer: about its target, sideways, and nearer.
+
+const PAUSE = 60;
+
+const add = (a, b, s = 1) => a.map((x, i) => x + s * b[i]);
+const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);
+const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b * d];
+const unit = (a) => a.map((x) => x / (Math.hypot(...a) || 1));
+
+// `v` turned about `axis`, a unit vector (Rodrigues).
+function turned(v, axis, angle) {
+  const [s, c] = [Math.sin(angle), Math.cos(angle)];
+  const along = dot(v, axis) * (1 - c);
+  const side = cross(axis, v);
+  return v.map((x, i) => x * c + side[i] * s + axis[i] * along);
+}
+
+export class Camera {
+  #place = null;
+  #touched = 0;
+  #timer = null;
+
+  constructor(send) {
+    this.send = send;
+  }
+
+  // What the program says; while it is being moved, what the pointer says counts.
+  learn({ position, target, up, yfov }) {
+    if (performance.now() - this.#touched > 1500) this.#place = { position, target, up, yfov };
+  }
+
+  // `dx` and `dy` in parts of the canvas's height.
+  orbit(dx, dy) {
+    this.#move(({ position, target, up }) => {
+      const away = add(position, target, -1);
+      const right = unit(cross(up, away));
+      const pole = Math.acos(Math.min(Math.max(dot(unit(away), [0, 1, 0]), -1), 1));
+      const pitch = Math.min(Math.max(-dy * 3, 0.02 - pole), Math.PI - 0.02 - pole);
+      const swing = (v) => turned(turned(v, right, pitch), [0, 1, 0], -dx * 3);
+      return { position: add(target, swing(away)), target, up: swing(up) };
+    });
+  }
+
+  pan(dx, dy) {
+    this.#move(({ position, target, up, yfov }) => {
+      const away = add(position, target, -1);
+      const reach = Math.hypot(...away) * 2 * Math.tan(((yfov ?? 40) * Math.PI) / 360);
+      const right = unit(cross(up, away)), above = unit(cross(away, right));
+      const by = add(right.map((x) => -x * dx * reach), above, dy * reach);
+      return { position: add(position, by), target: add(target, by), up };
+    });
+  }
+
+  dolly(factor) {
+    this.#move(({ position, target, up }) => ({ position: add(target, add(position, target, -1), factor), target, up }));
+  }
+
+  #move(how) {
+    if (!this.#place) return;
+    this.#place = { ...this.#place, ...how(this.#place) };
+    this.#touched = performance.now();
+    // The last place always gets there; those between need not.
+    this.#timer ??= setTimeout(() => {
+      this.#timer = null;
+      const { position, target, up } = this.#place;
+      this.send({ do: "camera", position, target, up });
+    }, PAUSE);
+  }
+}

@@ -1,0 +1,41 @@
+// Keys, and the sheet that explains them.
+
+const KEYS = (act) => [
+  [" ", "Space", "stop or continue the render", act.run],
+  ["n", "N", "begin the image anew", act.restart],
+  ["[", "[", "darker by a quarter stop", () => act.exposure(-0.25)],
+  ["]", "]", "brighter by a quarter stop", () => act.exposure(0.25)],
+  ["0", "0", "exposure as it is", () => act.exposure(0)],
+  ["t", "T", "next tone map", act.curve],
+  ["l", "L", "false colour: stops from middle grey", act.falseColor],
+  ["f", "F", "fit the image", act.fit],
+  ["1", "1", "a pixel for a pixel", act.actual],
+  ["w", "W", "wipe between before and now", act.wipe],
+  ["b", "B", "show the image of before", act.swap],
+  ["d", "D", "difference, four times as strong", act.difference],
+  ["c", "C", "move the camera with the pointer", () => act.tool("camera")],
+  ["r", "R", "draw the region to render", () => act.tool("region")],
+  ["a", "A", "render all of it again", act.whole],
+  ["s", "S", "save what is shown as PNG", act.save],
+  ["p", "P", "show or hide the panel", act.panel],
+  ["?", "?", "this sheet", act.help],
+];
+
+export function addKeys(actions) {
+  const keys = KEYS(actions);
+  const sheet = document.getElementById("keys");
+  for (const [, name, meaning] of keys) {
+    sheet.append(
+      Object.assign(document.createElement("dt"), { textContent: name }),
+      Object.assign(document.createElement("dd"), { textContent: meaning }),
+    );
+  }
+  document.addEventListener("keydown", (event) => {
+    const isTyping = event.target.matches?.("input[type=number], textarea, select");
+    if (isTyping || event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+    const found = keys.find(([key]) => key === event.key.toLowerCase());
+    if (!found) return;
+    event.preventDefault();
+    found[3]();
+  });
+}

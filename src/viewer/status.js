@@ -1,0 +1,58 @@
+// What is going on, in words.
+
+const $ = (id) => document.getElementById(id);
+
+export function duration(seconds) {
+  const s = Math.round(seconds);
+  if (seconds < 10) return `${seconds.toFixed(1)} s`;
+  if (s < 120) return `${s} s`;
+  return s < 7200 ? `${Math.floor(s / 60)} min` : `${Math.floor(s / 3600)} h ${Math.floor((s / 60) % 60)} min`;
+}
+
+export function showState(state) {
+  const name = state.scene.split(/[\\/]/).pop();
+  $("name").textContent = name;
+  $("name").title = state.scene;
+  document.title = `${name} – Ajar`;
+  $("phase").textContent = state.phase;
+  $("phase").dataset.phase = state.phase;
+  const noise = state.noise === null ? "" : `, noise ${(state.noise * 100).toFixed(1)} %`;
+  const left = state.seconds_left === null ? "" : `, about ${duration(state.seconds_left)} left`;
+  const [width, height] = state.size;
+  $("numbers").textContent = state.image === 0 ? "" : `${width}×${height}, ${state.samples} samples a pixel${noise}, ${duration(state.seconds)}${left}`;
+  $("changed").textContent = state.shown_for.length ? `changed: ${state.shown_for.join(", ")}` : "";
+  $("progress").value = state.phase === "done" ? 1 : state.done;
+  const isRunning = state.phase === "rendering";
+  $("run").textContent = isRunning ? "Stop" : "Continue";
+  $("run").disabled = !["rendering", "stopped", "done"].includes(state.phase);
+  showErrors(state.errors);
+  showEdits(state);
+}
+
+function showErrors(errors) {
+  $("banner").hidden = errors.length === 0;
+  $("banner").replaceChildren(...errors.slice(0, 8).map(({ file, place, element, message, hint }) => {
+    const line = document.createElement("p");
+    const where = document.createElement("code");
+    where.textContent = [file, ...(place ?? [])].filter((it) => it !== null).join(":") + ": ";
+    line.append(where, [element, message].filter(Boolean).join(": "));
+    if (hint) {
+      const advice = Object.assign(document.createElement("span"), { className: "hint", textContent: ` – ${hint}` });
+      line.append(advice);
+    }
+    return line;
+  }));
+}
+
+function showEdits({ edits, saved }) {
+  $("edits").textContent = edits || "None.";
+  for (const id of ["copy", "save", "revert"]) $(id).disabled = !edits;
+  $("saved").textContent = saved ? `Saved as ${saved}` : "";
+}
+
+export function showProbe({ x, y, value, error, object, material }) {
+  const number = (v) => (v === null ? "NaN" : Number(v).toPrecision(4)).padStart(10);
+  const rows = ["R", "G", "B"].map((name, i) => `${name} ${number(value[i])}` + (error ? ` ± ${Number(error[i]).toPrecision(2)}` : ""));
+  $("probe").textContent = [`(${x}, ${y})`, ...rows, ...[object, material].filter(Boolean)].join("\n");
+  $("probe").hidden = false;
+}

@@ -1,0 +1,137 @@
+//! What is seen of renders: by pages, by tev, and by who asks for a pixel.
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+use ajar_integrators::Window;
+use ajar_live::{frame::Frame, server::Stage, tev::Tev};
+
+/// Pixels of linear RGB, rows from the top.
+type Pixels = Vec<[f32; 3]>;
+
+/// An image, or a part of it.
+pub(super) struct Shot {
+    /// Full frame, pixels.
+    pub size: [u32; 2],
+    /// The part.
+    pub window: Window,
+    /// Its pixels.
+    pub pixels: Pixels,
+    /// Their standard errors, where known.
+    pub errors: Option<Pixels>,
+}
+
+/// A pixel with its standard error, where known.
+pub(super) type Pixel = ([f32; 3], Option<[f32; 3]>);
+
+pub(super) struct Screen {
+    picture: Mutex<Picture>,
+    stage: Stage,
+    tev: Option<Arc<Mailbox>>,
+}
+
+#[derive(Default)]
+struct Picture {
+    size: [usize; 2],
+    pixels: Pixels,
+    errors: Pixels,
+    frame: Arc<Frame>,
+}
+
+impl Screen {
+    pub fn new(stage: Stage, tev: Option<Tev>) -> Self {
+        Self { picture: Mutex::default(), stage, tev: tev.map(Mailbox::start) }
+    }
+
+    /// Shows an image; a part lies over what was shown before.
+    pub fn show(&self, shot: Shot) {
+        let mut picture = lock(&self.picture);
+        picture.lay(shot);
+        let [width, height] = picture.size;
+        let frame = Arc::new(Frame::new(width, height, &picture.pixels, Some(&picture.frame)));
+        picture.frame = Arc::clone(&frame);
+        if let Some(tev) = &self.tev {
+            tev.put(picture.size, &picture.pixels);
+        }
+        drop(picture);
+        self.stage.show_frame(frame);
+    }
+
+    /// Shows a first, coarse image until there is a better one.
+    pub fn show_coarse(&self, [width, height]: [u32; 2], pixels: &[[f32; 3]]) {
+        let frame = Frame::new(width as usize, height as usize, pixels, None);
+        self.stage.show_frame(Arc::new(frame));
+    }
+
+    /// What is shown, coarse images left out.
+    pub fn frame(&self) -> Arc<Frame> {
+        Arc::clone(&lock(&self.picture).frame)
+    }
+
+    pub fn pixel(&self, x: u32, y: u32) -> Option<Pixel> {
+        let picture = lock(&self.picture);
+        let [width, height] = picture.size;
+        let (x, y) = (x as usize, y as usize);
+        let at = (x < width && y < height).then_some(y * width + x)?;
+        let error = picture.errors.get(at).copied().filter(|error| error.iter().all(|e| e.is_finite()));
+        Some((*picture.pixels.get(at)?, error))
+    }
+}
+
+impl Picture {
+    fn lay(&mut self, shot: Shot) {
+        let size = shot.size.map(|n| n as usize);
+        let count = size[0] * size[1];
+        if self.size != size {
+            (self.size, self.pixels, self.errors) = (size, vec![[0.0; 3]; count], Vec::new());
+        }
+        self.errors.resize(count, [f32::NAN; 3]);
+        let errors = shot.errors.unwrap_or_else(|| vec![[f32::NAN; 3]; shot.pixels.len()]);
+        let width = shot.window.width() as usize;
+        for (row, y) in (shot.window.y0..shot.window.y1).enumerate() {
+            let from = row * width..(row + 1) * width;
+            let start = y as usize * size[0] + shot.window.x0 as usize;
+            for (all, part) in [(&mut self.pixels, &shot.pixels), (&mut self.errors, &errors)] {
+                if let (Some(all), Some(part)) = (all.get_mut(start..start + width), part.get(from.clone())) {
+                    all.copy_from_slice(part);
+                }
+            }
+        }
+    }
+}
+
+/// The last image that tev did not get yet: a tev that is slow or away holds nobody up.
+#[derive(Default)]
+struct Mailbox {
+    next: Mutex<Option<([usize; 2], Pixels)>>,
+    filled: Condvar,
+}
+
+impl Mailbox {
+    fn start(mut tev: Tev) -> Arc<Self> {
+        let mailbox = Arc::<Self>::default();
+        let weak = Arc::downgrade(&mailbox);
+        std::thread::spawn(move || {
+            while let Some(mailbox) = weak.upgrade() {
+                let mut next = lock(&mailbox.next);
+                while next.is_none() {
+                    next = mailbox.filled.wait(next).unwrap_or_else(PoisonError::into_inner);
+                }
+                let Some(([width, height], pixels)) = next.take() else { continue };
+                drop(next);
+                // It may not run yet; the next image tries again.
+                let _ = tev.show(width, height, &pixels);
+            }
+        });
+        mailbox
+    }
+
+    fn put(&self, size: [usize; 2], pixels: &[[f32; 3]]) {
+        *lock(&self.next) = Some((size, pixels.to_vec()));
+        self.filled.notify_one();
+    }
+}
+
+/// What was written before a panic elsewhere is whole.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,213 @@
+"""How long `ajar watch` takes from a save to the first pixels that show it.
+
+    cargo build --release
+    pip install numpy
+    python tools/bench/watch.py target/release/ajar
+
+writes a scene around an asset of a million triangles with a texture, opens the page's WebSocket as a browser does, and
+saves material, camera, texture and geometry again and again: `--saves` times each. The clock runs from the moment that
+the file has its new name until the first part of a changed frame has arrived.
+"""
+
+import argparse
+import base64
+import json
+import os
+import socket
+import statistics
+import struct
+import subprocess
+import tempfile
+import time
+import zlib
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import numpy as np
+from large import sheet
+
+SCENE = """
+[[import]]
+file = "sheet.glb"
+
+[[camera]]
+name = "main"
+position = [{x}, 2, 3]
+target = [0, 0, 0]
+
+[[light]]
+type = "environment"
+radiance = 0.5
+
+[[light]]
+type = "directional"
+direction = [-1, -2, -1]
+illuminance = 3
+
+[material.sheet]
+base_color_texture = "wood.png"
+roughness = {roughness}
+
+[render]
+size = [1280, 720]
+noise = 0.001
+"""
+
+
+def write(path, content):
+    """As editors do: a new file takes the name. Returns when it did."""
+    other = path.with_suffix(".new")
+    other.write_bytes(content)
+    os.replace(other, path)
+    return time.perf_counter()
+
+
+def glb(positions, normals, triangles):
+    """The sheet with texture coordinates and a material."""
+    uvs = (positions[:, [0, 2]] / 4 + 0.5).astype("<f4")
+    arrays = [positions, normals, uvs, triangles]
+    starts = np.cumsum([0] + [array.nbytes for array in arrays]).tolist()
+    view = [{"buffer": 0, "byteOffset": start, "byteLength": array.nbytes} for start, array in zip(starts, arrays)]
+    floats = {"componentType": 5126, "count": len(positions)}
+    limits = {"min": positions.min(0).tolist(), "max": positions.max(0).tolist()}
+    attributes = {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}
+    document = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "materials": [{"name": "sheet"}],
+        "meshes": [{"primitives": [{"attributes": attributes, "indices": 3, "material": 0}]}],
+        "accessors": [
+            {"bufferView": 0, "type": "VEC3", **floats, **limits},
+            {"bufferView": 1, "type": "VEC3", **floats},
+            {"bufferView": 2, "type": "VEC2", **floats},
+            {"bufferView": 3, "componentType": 5125, "count": triangles.size, "type": "SCALAR"},
+        ],
+        "bufferViews": view,
+        "buffers": [{"byteLength": starts[-1]}],
+    }
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    body = b"".join(array.tobytes() for array in arrays)
+    head = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(body))
+    return head + struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(body), b"BIN\0") + body
+
+
+def png(number, side=1024):
+    """A picture of noise, each number another."""
+    noise = np.random.default_rng(number).integers(90, 200, (side, side, 3), "u1")
+    rows = np.concatenate([np.zeros((side, 1), "u1"), noise.reshape(side, -1)], axis=1)
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", side, side, 8, 2, 0, 0, 0)
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + chunk(b"IDAT", zlib.compress(rows.tobytes(), 1))
+        + chunk(b"IEND", b"")
+    )
+
+
+class Page:
+    """The WebSocket of a page (RFC 6455), as far as listening goes."""
+
+    def __init__(self, url):
+        parts = urlsplit(url)
+        self.socket = socket.create_connection((parts.hostname, parts.port), timeout=120)
+        key = base64.b64encode(os.urandom(16)).decode()
+        headers = {
+            "Host": parts.netloc,
+            "Origin": f"http://{parts.netloc}",
+            "Connection": "Upgrade",
+            "Upgrade": "websocket",
+            "Sec-WebSocket-Version": "13",
+            "Sec-WebSocket-Key": key,
+        }
+        lines = [f"GET {parts.path}socket HTTP/1.1", *(f"{name}: {value}" for name, value in headers.items())]
+        self.socket.sendall("".join(line + "\r\n" for line in [*lines, ""]).encode())
+        head = b""
+        while not head.endswith(b"\r\n\r\n"):
+            head += self.socket.recv(1)
+
+    def read(self, count):
+        return self.socket.recv(count, socket.MSG_WAITALL)
+
+    def message(self):
+        """A document, or None for a part of a frame."""
+        first, length = self.read(2)
+        if length == 126:
+            (length,) = struct.unpack(">H", self.read(2))
+        elif length == 127:
+            (length,) = struct.unpack(">Q", self.read(8))
+        payload = self.read(length)
+        return json.loads(payload) if first & 15 == 1 else None
+
+    def image(self):
+        """Waits for the first frame of an image that is newer than any before; returns its number and when that was."""
+        newest = getattr(self, "newest", 0)
+        found = 0
+        while True:
+            it = self.message()
+            if it is None and found > newest:
+                self.newest = found
+                return found, time.perf_counter()
+            if it and it["type"] == "state" and it["phase"] == "rendering":
+                found = it["image"]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("ajar")
+    parser.add_argument("--saves", type=int, default=20)
+    parser.add_argument("--triangles", type=int, default=1_000_000)
+    parser.add_argument("--threads", type=int, default=2)
+    options = parser.parse_args()
+    positions, normals, triangles = sheet(options.triangles)
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+
+        def scene(number):
+            text = SCENE.format(x=2 + number[0] * 0.01, roughness=0.2 + number[1] * 0.01)
+            return write(folder / "scene.toml", text.encode())
+
+        def shape(number):
+            positions[: len(positions) // 10, 1] += 0.01
+            return glb(positions, normals, triangles)
+
+        write(folder / "sheet.glb", shape(0))
+        write(folder / "wood.png", png(0))
+        scene([0, 0])
+        edits = {
+            "material": lambda i: scene([0, i]),
+            "camera": lambda i: scene([i, 0]),
+            "texture": lambda i: write(folder / "wood.png", textures[i]),
+            "geometry": lambda i: write(folder / "sheet.glb", shape(i)),
+        }
+        textures = [png(i) for i in range(options.saves + 1)]
+        command = [options.ajar, "watch", folder / "scene.toml", "--port", "0", "--log-format", "json"]
+        process = subprocess.Popen([*command, "--threads", str(options.threads)], stderr=subprocess.PIPE, text=True)
+        try:
+            said = (json.loads(line) for line in process.stderr)
+            page = Page(next(it["page"] for it in said if "page" in it))
+            page.image()
+            print(f"{len(triangles):,} triangles, {options.threads} threads, {options.saves} saves each")
+            print("edit      median     95 %")
+            for name, save in edits.items():
+                times = []
+                for i in range(1, options.saves + 1):
+                    # Into the render, so that it has to be stopped.
+                    time.sleep(1.5)
+                    saved = save(i)
+                    times.append(page.image()[1] - saved)
+                high = statistics.quantiles(times, n=20)[-1] if len(times) > 1 else times[0]
+                print(f"{name:8} {statistics.median(times):6.2f} s {high:6.2f} s", flush=True)
+        finally:
+            process.terminate()
+            process.wait()
+
+
+if __name__ == "__main__":
+    main()
