@@ -228,7 +228,9 @@ def test_the_camera_is_moved_with_the_pointer(bench: Bench) -> None:
     before = bench.mean(ALL)
     box = bench.page.locator("#canvas").bounding_box()
     middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    bench.page.focus("#canvas")
     bench.page.keyboard.press("c")
+    assert bench.page.evaluate("document.getElementById('canvas').dataset.tool") == "camera"
     bench.page.mouse.move(*middle)
 
     def turn() -> None:
