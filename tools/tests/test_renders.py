@@ -20,7 +20,8 @@ def render(target: Path, *arguments: str) -> Path:
     if not binary:
         pytest.skip("AJAR_BIN does not name an ajar program")
     command = [binary, "render", SCENE, "--size", f"{SIZE[0]}x{SIZE[1]}", "--rounds", "16", "-o", target, "--quiet"]
-    command += ["--max-depth", "6"]
+    if not any("max_depth" in argument for argument in arguments):
+        command += ["--max-depth", "6"]
     integrator = [] if "--integrator" in arguments else ["--integrator", "path"]
     subprocess.run([*command, *integrator, *arguments], check=True, timeout=1200)
     return target
