@@ -76,7 +76,7 @@ def test_ajar_diff_hands_over(reference: Path, tmp_path: Path, monkeypatch: pyte
     monkeypatch.setenv("AJAR_DIFF_PYTHON", sys.executable)
     brighter = render(tmp_path / "new.exr", "--seed", "3", "--set", "camera.main.exposure=0.1")
     report = tmp_path / "report.html"
-    for new, code in ((reference, 0), (brighter, 1), (tmp_path / "missing.exr", 2)):
+    for new, code in ((reference, 0), (tmp_path / "missing.exr", 2), (brighter, 1)):
         command = [os.environ["AJAR_BIN"], "diff", new, reference, "--html", report]
         assert subprocess.run(command, timeout=60).returncode == code
     assert f"ajar diff {brighter}" in report.read_text("utf-8")
