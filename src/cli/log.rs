@@ -18,6 +18,28 @@ pub(super) enum Format {
     Json,
 }
 
+/// How much is said.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(super) struct Verbosity {
+    /// Show notes too
+    #[arg(short, long, conflicts_with = "quiet")]
+    verbose: bool,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl Verbosity {
+    /// The least severity of messages that are shown.
+    pub fn least(self) -> Severity {
+        match (self.quiet, self.verbose) {
+            (true, _) => Severity::Error,
+            (_, true) => Severity::Note,
+            _ => Severity::Warning,
+        }
+    }
+}
+
 /// A line of JSON.
 #[derive(Serialize)]
 #[serde(tag = "type", rename_all = "lowercase")]

@@ -22,7 +22,7 @@ use super::{
     frames::{self, Frames, parse_frames},
     input::Input,
     job::Job,
-    log::Format,
+    log::{Format, Verbosity},
     print,
     progress::Progress,
     results,
@@ -58,23 +58,8 @@ pub(super) struct Args {
     /// Write numbers about the render as JSON
     #[arg(long, value_name = "FILE")]
     stats_json: Option<PathBuf>,
-    /// Show notes too
-    #[arg(short, long, conflicts_with = "quiet")]
-    verbose: bool,
-    /// Say nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
-}
-
-impl Args {
-    /// The least severity of messages that are shown.
-    fn least(&self) -> Severity {
-        match (self.quiet, self.verbose) {
-            (true, _) => Severity::Error,
-            (_, true) => Severity::Note,
-            _ => Severity::Warning,
-        }
-    }
+    #[command(flatten)]
+    verbosity: Verbosity,
 }
 
 pub(super) fn run(args: &Args, log: Format) -> Exit {
@@ -109,7 +94,7 @@ fn image(args: &Args, log: Format, signals: &Signals) -> Result<Exit, Vec<Diagno
         return Ok(Exit::Ok);
     }
     let Job { integrator, settings, shard, rules, destination, .. } = &ready.job;
-    let (mut progress, mut saving) = (Progress::new(args.quiet, log), args.checkpoints.saving());
+    let (mut progress, mut saving) = (Progress::new(args.verbosity.quiet, log), args.checkpoints.saving());
     let each_round = |film: &Film, status: &Status, rounds: &dyn Rounds| {
         progress.update(status, rules);
         let report = LazyCell::new(|| rounds.report());
@@ -121,7 +106,7 @@ fn image(args: &Args, log: Format, signals: &Signals) -> Result<Exit, Vec<Diagno
             && let Err(error) = saving.save(&run(), &destination.form)
         {
             // A disk that is full now may have room at the end.
-            log.messages(&[Diagnostic { severity: Severity::Warning, ..error }], args.least());
+            log.messages(&[Diagnostic { severity: Severity::Warning, ..error }], args.verbosity.least());
         }
     };
     let start = Start { shard: *shard, done };
@@ -139,7 +124,7 @@ fn image(args: &Args, log: Format, signals: &Signals) -> Result<Exit, Vec<Diagno
     let saved = saving.save(&run, &destination.form);
     let written = results::write(&run, destination, args.stats_json.as_deref());
     let notes = saved.and(written).map_err(|d| vec![d])?;
-    if !args.quiet {
+    if !args.verbosity.quiet {
         log.messages(&notes, Severity::Note);
         print(&results::summary(&run, destination, args.checkpoints.path(), log));
     }
@@ -168,7 +153,7 @@ impl Ready {
         let loaded = args.input.load(args.demand.size)?;
         let job = Job::new(args, &loaded, saved.as_ref()).map_err(|d| vec![d])?;
         let Loaded { file, hash: scene_hash } = loaded;
-        log.messages(&file.diagnostics, args.least());
+        log.messages(&file.diagnostics, args.verbosity.least());
         let name = args.demand.camera.as_deref().or(file.render.camera.as_deref());
         let id = session::choose_camera(&file.scene, name).map_err(|d| vec![d])?;
         let camera = (file.scene.cameras[id.0].clone(), id.1);
@@ -176,7 +161,7 @@ impl Ready {
         let done = saved.map(|saved| args.checkpoints.resume(saved, &subject, job.shard)).transpose()?;
         let (world, warnings) = session::prepare_world(file.scene, id, job.size, args.input.memory_limit)
             .map_err(|d| session::about(path, d))?;
-        log.messages(&session::about(path, warnings), args.least());
+        log.messages(&session::about(path, warnings), args.verbosity.least());
         Ok((Self { world, camera, scene_hash, job, features: OnceCell::new() }, done))
     }
 
@@ -212,7 +197,7 @@ fn snapshot(run: &Run<'_>, to: &Destination, args: &Args, log: Format) {
             .in_file(&to.exr),
         Err(error) => Diagnostic { severity: Severity::Warning, ..error },
     };
-    if !args.quiet {
+    if !args.verbosity.quiet {
         log.messages(&[said], Severity::Note);
     }
 }

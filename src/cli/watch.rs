@@ -11,7 +11,7 @@ use super::{
     block::Block,
     demand::Demand,
     input::Input,
-    log::Format,
+    log::{Format, Verbosity},
     page::{self, Door},
     signals::Signals,
 };
@@ -51,23 +51,8 @@ pub(super) struct Args {
     demand: Demand,
     #[command(flatten)]
     appearance: Appearance,
-    /// Show notes too
-    #[arg(short, long, conflicts_with = "quiet")]
-    verbose: bool,
-    /// Say nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
-}
-
-impl Args {
-    /// The least severity of messages that are shown.
-    fn least(&self) -> Severity {
-        match (self.quiet, self.verbose) {
-            (true, _) => Severity::Error,
-            (_, true) => Severity::Note,
-            _ => Severity::Warning,
-        }
-    }
+    #[command(flatten)]
+    verbosity: Verbosity,
 }
 
 impl Subject for Args {
@@ -125,7 +110,7 @@ fn watch(args: &Args, log: Format) -> Result<Exit, Diagnostic> {
     let watch = Watch::new(args, options).map_err(|e| failed("watch files", &e))?;
     let server = if args.once { None } else { Some(page::open(&args.door, &watch, log)?) };
     let url = server.as_ref().map(|server| server.url());
-    let mut block = Block::new(log, args.least(), url, args.exec.as_deref());
+    let mut block = Block::new(log, args.verbosity.least(), url, args.exec.as_deref());
     let end = watch.run(signals.stop(), &mut block);
     block.end();
     Ok(match end {

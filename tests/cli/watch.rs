@@ -10,27 +10,7 @@ use std::{
 
 use serde_json::Value;
 
-use crate::bench::Bench;
-
-const SCENE: &str = r#"
-[[import]]
-file = "box.obj"
-
-[[camera]]
-name = "main"
-position = [3, 2, 4]
-target = [0, 0, 0]
-
-[[light]]
-name = "sun"
-type = "directional"
-direction = [-1, -2, -1]
-illuminance = 10
-
-[render]
-size = [24, 16]
-spp = 4
-"#;
+use crate::bench::{Bench, SCENE};
 
 const BOX: &str = "\
 mtllib box.mtl\nusemtl clay

@@ -8,7 +8,7 @@
 
 use super::{
     GRAZING, LOBES,
-    albedo::{Albedo, Interface, Row, mean},
+    albedo::{Albedo, Interface, Row, mean, mean_near_horizon},
     coat::Coat,
     compensation::{self, Body},
     film::Film,
@@ -158,12 +158,14 @@ impl Layered {
     fn mean_reached(&self) -> f64 {
         let azimuths = if self.ggx.is_isotropic() { &AZIMUTHS[..1] } else { &AZIMUTHS[..] };
         let along = |azimuth: &f64| {
-            mean(if self.film.is_some() { 6 } else { 12 }, |cos| {
+            let reached = |cos: f64| {
                 let view = self.view(
                     glam::DVec2::from_angle(*azimuth).extend(0.0) * (1.0 - cos * cos).sqrt() + DVec3::Z * cos,
                 );
                 view.under * view.body_passed
-            })
+            };
+            let n = if self.film.is_some() { 6 } else { 12 };
+            if self.sheen.is_some() { mean_near_horizon(n, reached) } else { mean(n, reached) }
         };
         azimuths.iter().map(along).sum::<f64>() / azimuths.len() as f64
     }

@@ -9,7 +9,7 @@ use std::{
 
 use glam::DVec3;
 
-use super::albedo::{NODES, locate, mean, node};
+use super::albedo::{NODES, locate, mean_near_horizon, node};
 use crate::math::Rgb;
 
 /// Intervals of cosines from the horizon on in which albedos are taken from above.
@@ -39,26 +39,16 @@ impl Sheen {
 
     /// BRDF for directions with z > 0 and their half vector.
     pub fn value(&self, a: DVec3, b: DVec3, half: DVec3) -> Rgb {
-        let limit = |cos: f64| 1.0 / self.unlimited(cos).max(1.0);
-        self.color() * (value(self.alpha.into(), a.z, b.z, half.z) * limit(a.z) * limit(b.z))
+        let alpha = self.alpha.into();
+        let [a_limit, b_limit] = [a, b].map(|w| limit(unlimited(), alpha, w.z));
+        self.color() * (value(alpha, a.z, b.z, half.z) * a_limit * b_limit)
     }
 
-    /// Albedo of a white sheen at cosine `cos`; where the model gives more than it gets, near the horizon, 1, which is an
-    /// estimate from above.
+    /// Albedo of a white sheen at cosine `cos`.
     pub fn albedo(&self, cos: f64) -> f64 {
-        self.unlimited(cos).min(1.0)
-    }
-
-    fn unlimited(&self, cos: f64) -> f64 {
-        let (i, x) = locate(cos);
-        let (j, y) = locate(self.alpha.into());
-        let rows = table();
-        let at = |j: usize| {
-            let [near, far] = [rows[j][i], rows[j][i + 1]].map(f64::from);
-            // At the horizon albedos rise faster than straight lines between nodes.
-            if i < STEEP { near.max(far) } else { near * (1.0 - x) + far * x }
-        };
-        at(j) * (1.0 - y) + at(j + 1) * y
+        static LIMITED: OnceLock<Box<Table>> = OnceLock::new();
+        let table = LIMITED.get_or_init(|| tabulate(|alpha, z| limit(unlimited(), alpha, z)));
+        look_up(table, self.alpha.into(), cos).min(1.0)
     }
 
     /// What passes it one way, in the channel that reflects most, given [`Self::albedo`] of a direction.
@@ -68,7 +58,7 @@ impl Sheen {
 
     /// Average of [`Self::albedo`] over the hemisphere.
     pub fn mean_albedo(&self) -> f64 {
-        mean(12, |cos| self.albedo(cos))
+        mean_near_horizon(12, |cos| self.albedo(cos))
     }
 }
 
@@ -91,18 +81,42 @@ fn shadowing(alpha: f64, cos: f64) -> f64 {
 }
 
 /// Albedos over the width (rows) and the cosine.
-fn table() -> &'static [[f32; NODES]; NODES] {
-    static TABLE: OnceLock<Box<[[f32; NODES]; NODES]>> = OnceLock::new();
-    TABLE.get_or_init(|| {
-        Box::new(std::array::from_fn(|j| {
-            let alpha = node(j).max(SMOOTHEST * SMOOTHEST);
-            std::array::from_fn(|i| integrate(alpha, node(i).max(1e-3)) as f32)
-        }))
-    })
+type Table = [[f32; NODES]; NODES];
+
+/// Those of the model as it is, which gives more than it gets near the horizon.
+fn unlimited() -> &'static Table {
+    static TABLE: OnceLock<Box<Table>> = OnceLock::new();
+    TABLE.get_or_init(|| tabulate(|_, _| 1.0))
 }
 
-/// Integral of the BRDF times the cosine over the hemisphere.
-fn integrate(alpha: f64, cos: f64) -> f64 {
+/// What takes that away, for one of both directions.
+fn limit(unlimited: &Table, alpha: f64, cos: f64) -> f64 {
+    1.0 / look_up(unlimited, alpha, cos).max(1.0)
+}
+
+/// Albedos where directions of a width and a cosine count by `limit`.
+fn tabulate(limit: impl Fn(f64, f64) -> f64) -> Box<Table> {
+    Box::new(std::array::from_fn(|j| {
+        let alpha = node(j).max(SMOOTHEST * SMOOTHEST);
+        std::array::from_fn(|i| {
+            let cos = node(i).max(1e-3);
+            (integrate(alpha, cos, |z| limit(alpha, z)) * limit(alpha, cos)) as f32
+        })
+    }))
+}
+
+fn look_up(rows: &Table, alpha: f64, cos: f64) -> f64 {
+    let ((i, x), (j, y)) = (locate(cos), locate(alpha));
+    let at = |j: usize| {
+        let [near, far] = [rows[j][i], rows[j][i + 1]].map(f64::from);
+        // At the horizon albedos rise faster than straight lines between nodes.
+        if i < STEEP { near.max(far) } else { near * (1.0 - x) + far * x }
+    };
+    at(j) * (1.0 - y) + at(j + 1) * y
+}
+
+/// Integral of the BRDF times the cosine over the hemisphere, directions weighed by their cosine's `limit`.
+fn integrate(alpha: f64, cos: f64, limit: impl Fn(f64) -> f64) -> f64 {
     const POLAR: u32 = 48;
     const AZIMUTHS: u32 = 32;
     let a = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
@@ -111,11 +125,11 @@ fn integrate(alpha: f64, cos: f64) -> f64 {
         // Denser towards the horizon, where fibres shine: z = t², dz = 2 t dt.
         let t = (f64::from(i) + 0.5) / f64::from(POLAR);
         let z = t * t;
-        let sin = (1.0 - z * z).sqrt();
+        let (sin, limit) = ((1.0 - z * z).sqrt(), limit(z));
         for j in 0..AZIMUTHS {
             let azimuth = PI * (f64::from(j) + 0.5) / f64::from(AZIMUTHS);
             let b = DVec3::new(sin * azimuth.cos(), sin * azimuth.sin(), z);
-            sum += value(alpha, cos, z, (a + b).normalize().z) * z * 2.0 * t;
+            sum += value(alpha, cos, z, (a + b).normalize().z) * z * 2.0 * t * limit;
         }
     }
     sum * TAU / f64::from(POLAR * AZIMUTHS)
@@ -130,7 +144,9 @@ mod tests {
         for roughness in [0.3, 0.55, 0.8, 1.0f64] {
             let sheen = Sheen::new(Rgb::ONE, roughness).unwrap();
             for cos in [0.1, 0.33, 0.7, 0.95] {
-                let exact = integrate(roughness * roughness, cos);
+                let alpha = roughness * roughness;
+                let limits = |z| limit(unlimited(), alpha, z);
+                let exact = integrate(alpha, cos, limits) * limits(cos);
                 assert!((sheen.albedo(cos) - exact).abs() < 0.01, "{roughness} {cos}");
             }
         }
