@@ -128,21 +128,18 @@ class Page:
         }
         lines = [f"GET {parts.path}socket HTTP/1.1", *(f"{name}: {value}" for name, value in headers.items())]
         self.socket.sendall("".join(line + "\r\n" for line in [*lines, ""]).encode())
-        head = b""
-        while not head.endswith(b"\r\n\r\n"):
-            head += self.socket.recv(1)
-
-    def read(self, count):
-        return self.socket.recv(count, socket.MSG_WAITALL)
+        self.stream = self.socket.makefile("rb")
+        while self.stream.readline() != b"\r\n":
+            pass
 
     def message(self):
         """A document, or None for a part of a frame."""
-        first, length = self.read(2)
+        first, length = self.stream.read(2)
         if length == 126:
-            (length,) = struct.unpack(">H", self.read(2))
+            (length,) = struct.unpack(">H", self.stream.read(2))
         elif length == 127:
-            (length,) = struct.unpack(">Q", self.read(8))
-        payload = self.read(length)
+            (length,) = struct.unpack(">Q", self.stream.read(8))
+        payload = self.stream.read(length)
         return json.loads(payload) if first & 15 == 1 else None
 
     def image(self):
