@@ -13,6 +13,7 @@ pub mod plugin;
 mod polygon;
 pub mod python;
 mod report;
+mod srgb;
 pub mod usd;
 
 use std::path::Path;

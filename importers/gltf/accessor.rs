@@ -6,6 +6,7 @@ use gltf::json::{
     accessor::{ComponentType, Type},
     validation::Checked,
 };
+use rayon::prelude::*;
 
 use super::{Asset, Context, at, buffers::View};
 
@@ -53,6 +54,14 @@ impl<'a> Elements<'a> {
     fn component<const N: usize>(&self, index: usize, component: usize) -> [u8; N] {
         let start = index * self.stride + component * N;
         self.bytes.get(start..start + N).and_then(|bytes| bytes.try_into().ok()).unwrap_or([0; N])
+    }
+
+    /// Element `index` as `N` floats.
+    fn floats<const N: usize>(&self, index: usize) -> [f32; N] {
+        let start = index * self.stride;
+        let bytes = self.bytes.get(start..start + 4 * N).unwrap_or_default();
+        let (numbers, _) = bytes.as_chunks::<4>();
+        std::array::from_fn(|i| numbers.get(i).copied().map_or(0.0, f32::from_le_bytes))
     }
 }
 
@@ -163,9 +172,25 @@ impl<'a> Accessor<'a> {
         std::array::from_fn(|i| if i < self.width { self.real(elements, index, i) } else { missing })
     }
 
-    /// Element `index` of an accessor of unsigned scalars.
-    pub fn index(&self, index: u32) -> u32 {
-        self.locate(index).map_or(0, |(elements, index)| whole(elements, self.kind, index))
+    /// The elements at these indices as [`get`](Self::get) gives them, on all cores.
+    pub fn gather<const N: usize, T>(&self, indices: &[u32], missing: f32) -> Vec<T>
+    where
+        T: From<[f32; N]> + Send,
+    {
+        let indices = indices.par_iter();
+        match (&self.dense, &self.sparse) {
+            // What large files consist of.
+            (Some(dense), None) if self.kind == ComponentType::F32 && self.width == N => {
+                indices.map(|&i| T::from(dense.floats(i as usize))).collect()
+            }
+            _ => indices.map(|&i| T::from(self.get(i, missing))).collect(),
+        }
+    }
+
+    /// All elements of an accessor of unsigned scalars.
+    pub fn indices(&self) -> Vec<u32> {
+        let index = |i| self.locate(i).map_or(0, |(elements, i)| whole(elements, self.kind, i));
+        (0..self.count).into_par_iter().map(index).collect()
     }
 
     /// Where the element is stored, if it is.

@@ -7,6 +7,7 @@ use gltf::json::{
     mesh::{Primitive, Semantic},
     validation::Checked,
 };
+use rayon::prelude::*;
 
 use super::{
     Asset, Context,
@@ -46,7 +47,7 @@ impl Vertices<'_> {
     ) -> Result<Mesh, Diagnostic> {
         let name = self.path("POSITION");
         self.prepare(context, positions, 3, &name)?;
-        let mut positions: Vec<_> = self.used.iter().map(|&i| Vec3::from(positions.get(i, 0.0))).collect();
+        let mut positions: Vec<Vec3> = positions.gather(self.used, 0.0);
         deform::morph(self, context, ("POSITION", |target| target.positions), &mut positions)?;
         let skin = deform::skin(self, context)?;
         if let Some(skin) = &skin {
@@ -54,7 +55,7 @@ impl Vertices<'_> {
                 *position = place.transform_point3(position.as_dvec3()).as_vec3();
             }
         }
-        if let Some(at) = positions.iter().position(|position| !position.is_finite()) {
+        if let Some(at) = positions.par_iter().position_first(|position| !position.is_finite()) {
             let vertex = self.used.get(at).copied().unwrap_or_default();
             return Err(Diagnostic::error("the position is not finite").element(format!("{name}[{vertex}]")));
         }
@@ -121,18 +122,18 @@ impl Vertices<'_> {
     ) -> Result<Option<Vec<Vec3>>, Diagnostic> {
         let name = self.path("NORMAL");
         let Some(accessor) = self.accessor(context, Semantic::Normals, &name, &[3])? else { return Ok(None) };
-        let mut normals: Vec<_> = self.used.iter().map(|&i| Vec3::from(accessor.get(i, 0.0))).collect();
+        let mut normals: Vec<Vec3> = accessor.gather(self.used, 0.0);
         deform::morph(self, context, ("NORMAL", |target| target.normals), &mut normals)?;
         for (normal, place) in normals.iter_mut().zip(skin.into_iter().flatten()) {
             *normal = (deform::for_normals(place) * normal.as_dvec3()).as_vec3();
         }
-        let (mut long, mut degenerate) = (false, false);
-        for normal in &mut normals {
+        let normalize = |normal: &mut Vec3| {
             let found = unit(*normal);
-            long |= found.is_some_and(|(_, length)| (length - 1.0).abs() > UNIT_TOLERANCE);
-            degenerate |= found.is_none();
             *normal = found.map_or(Vec3::ZERO, |(normal, _)| normal);
-        }
+            (found.is_some_and(|(_, length)| (length - 1.0).abs() > UNIT_TOLERANCE), found.is_none())
+        };
+        let (long, degenerate) =
+            normals.par_iter_mut().map(normalize).reduce(Default::default, |a, b| (a.0 | b.0, a.1 | b.1));
         if long && self.as_written() {
             context.report.approximate(&name, "normals are not of unit length; they are normalized");
         }
@@ -163,7 +164,8 @@ impl Vertices<'_> {
         let Some(accessor) = self.accessor(context, Semantic::Tangents, &name, &[4])? else {
             return Ok(None);
         };
-        let mut directions: Vec<_> = self.used.iter().map(|&i| Vec3::from(accessor.get(i, 0.0))).collect();
+        let mut directions: Vec<Vec3> =
+            self.used.par_iter().map(|&i| Vec3::from(accessor.get(i, 0.0))).collect();
         deform::morph(self, context, ("TANGENT", |target| target.tangents), &mut directions)?;
         for (direction, place) in directions.iter_mut().zip(skin.into_iter().flatten()) {
             *direction = place.transform_vector3(direction.as_dvec3()).as_vec3();
@@ -207,16 +209,13 @@ impl Vertices<'_> {
                 context.charge(self.used.len() as u64 * 8, &name)?;
                 sets.push(vec![Vec2::ZERO; self.used.len()]);
             }
-            let mut broken = false;
-            let finite = |&i: &u32| {
-                let uv = Vec2::from(accessor.get(i, 0.0));
-                broken |= !uv.is_finite();
-                if uv.is_finite() { uv } else { Vec2::ZERO }
-            };
-            sets.push(self.used.iter().map(finite).collect());
+            let mut uvs: Vec<Vec2> = accessor.gather(self.used, 0.0);
+            let broken = uvs.par_iter().any(|uv| !uv.is_finite());
             if broken {
+                uvs.iter_mut().filter(|uv| !uv.is_finite()).for_each(|uv| *uv = Vec2::ZERO);
                 context.report.approximate(&name, "texture coordinates that are not finite are set to zero");
             }
+            sets.push(uvs);
         }
         Ok(sets)
     }
@@ -227,14 +226,12 @@ impl Vertices<'_> {
         let Some(accessor) = self.accessor(context, Semantic::Colors(0), &name, &[3, 4])? else {
             return Ok(None);
         };
-        let mut clamped = false;
-        let color = |&i: &u32| {
-            let color = Vec4::from(accessor.get(i, 1.0));
+        let mut colors: Vec<Vec4> = accessor.gather(self.used, 1.0);
+        let clamp = |color: &mut Vec4| {
             let inside = color.map(|c| if c.is_nan() { 1.0 } else { c.clamp(0.0, 1.0) });
-            clamped |= inside != color;
-            inside
+            inside != std::mem::replace(color, inside)
         };
-        let colors = self.used.iter().map(color).collect();
+        let clamped = colors.par_iter_mut().map(clamp).reduce(|| false, |a, b| a | b);
         if clamped {
             context.report.note(&name, "colours are clamped to between 0 and 1");
         }

@@ -5,11 +5,11 @@ use std::{cell::RefCell, collections::HashMap};
 use ajar_scene::{Cause, Diagnostic, Severity};
 use gltf::json::{Root, buffer::Buffer};
 
-use super::{Context, at, meshopt, uri};
+use super::{Context, at, container::Bytes, meshopt, uri};
 
 /// All buffers. One that cannot be had is an error only for what needs it.
 pub(super) struct Buffers {
-    loaded: Vec<Result<Vec<u8>, Diagnostic>>,
+    loaded: Vec<Result<Bytes, Diagnostic>>,
     /// Buffer views that were compressed, or made of what was, by index.
     decoded: HashMap<usize, Result<Vec<u8>, Diagnostic>>,
     asked_for: RefCell<Vec<bool>>,
@@ -28,7 +28,7 @@ impl Buffers {
     ///
     /// # Errors
     /// Only the memory limit.
-    pub fn load(root: &Root, mut binary: Option<Vec<u8>>, context: &mut Context) -> Result<Self, Diagnostic> {
+    pub fn load(root: &Root, mut binary: Option<Bytes>, context: &mut Context) -> Result<Self, Diagnostic> {
         let mut loaded = Vec::with_capacity(root.buffers.len());
         for (i, buffer) in root.buffers.iter().enumerate() {
             let chunk = if i == 0 { binary.take() } else { None };
@@ -92,16 +92,16 @@ impl Buffers {
 fn load(
     buffer: &Buffer,
     element: &str,
-    chunk: Option<Vec<u8>>,
+    chunk: Option<Bytes>,
     context: &mut Context,
-) -> Result<Vec<u8>, Diagnostic> {
+) -> Result<Bytes, Diagnostic> {
     let source = format!("{element}.uri");
     let mut bytes = match (&buffer.uri, chunk) {
         (Some(uri), _) => match uri::data(uri, context, &source)? {
-            Some(bytes) => bytes,
+            Some(bytes) => bytes.into(),
             None => {
                 let path = uri::file(uri, context, &source)?;
-                uri::read_file(&path, context, &source)?
+                uri::read_file(&path, context, &source)?.into()
             }
         },
         (None, Some(chunk)) => chunk,

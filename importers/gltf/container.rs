@@ -1,5 +1,7 @@
 //! The GLB container (specification, section 4) and how a file is recognized.
 
+use std::ops::Deref;
+
 use ajar_scene::Diagnostic;
 
 use crate::report::Report;
@@ -38,12 +40,39 @@ pub(super) fn is_binary(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
+/// Bytes that are the end of others, so that what comes before need not be cut off.
+pub(super) struct Bytes {
+    all: Vec<u8>,
+    start: usize,
+}
+
+impl Bytes {
+    /// Forgets what follows the first `length` bytes.
+    pub fn truncate(&mut self, length: usize) {
+        self.all.truncate(self.start.saturating_add(length));
+    }
+}
+
+impl From<Vec<u8>> for Bytes {
+    fn from(all: Vec<u8>) -> Self {
+        Self { all, start: 0 }
+    }
+}
+
+impl Deref for Bytes {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        self.all.get(self.start..).unwrap_or_default()
+    }
+}
+
 /// A file taken apart.
 pub(super) struct Container {
     /// The JSON text.
     pub json: Vec<u8>,
     /// The binary chunk, with up to three bytes of padding.
-    pub binary: Option<Vec<u8>>,
+    pub binary: Option<Bytes>,
     /// Whether the file is a GLB, where a line in the JSON is no line of the file.
     pub is_binary: bool,
 }
@@ -101,8 +130,7 @@ pub(super) fn split(mut file: Vec<u8>, report: &mut Report) -> Result<Container,
     };
     let binary = binary.map(|(start, end)| {
         file.truncate(end);
-        file.drain(..start);
-        file
+        Bytes { all: file, start }
     });
     Ok(Container { json, binary, is_binary: true })
 }

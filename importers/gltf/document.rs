@@ -19,7 +19,7 @@ pub(super) struct Document {
     pub json: Map<String, Value>,
     pub animations: Vec<Value>,
     /// The binary chunk.
-    pub binary: Option<Vec<u8>>,
+    pub binary: Option<container::Bytes>,
 }
 
 /// Takes a file apart.

@@ -28,6 +28,10 @@ pub const FEATURES: &[Feature] = &[
         name: "skins, morph targets",
         support: "full, but morph targets of texture coordinates and colours",
     },
+    Feature {
+        name: "EXT_lights_image_based",
+        support: "the sharpest level of the cube, PNG (RGBD) or JPEG; the rest follows from it",
+    },
     Feature { name: "EXT_mesh_gpu_instancing", support: "full; attributes of applications are ignored" },
     Feature { name: "EXT_meshopt_compression", support: "full" },
     Feature { name: "EXT_texture_webp", support: "full" },
@@ -65,8 +69,7 @@ pub const FEATURES: &[Feature] = &[
 ];
 
 /// What is lost with extensions that are not supported, for the message.
-const LOSSES: [(&str, &str); 14] = [
-    ("EXT_lights_image_based", "the surrounding light is missing"),
+const LOSSES: [(&str, &str); 13] = [
     ("GOOGLE_texture_basis", "its textures are dropped"),
     ("KHR_materials_coat", "its coat is missing"),
     ("KHR_materials_diffuse_roughness", "diffuse reflection is Lambert's"),

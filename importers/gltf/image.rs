@@ -53,7 +53,11 @@ fn named_after(source: &ImageSource) -> Option<String> {
     }
 }
 
-fn source(
+/// An image in its file or in a buffer.
+///
+/// # Errors
+/// It cannot be had, is of no known format, or memory runs out.
+pub(super) fn source(
     asset: &Asset,
     context: &mut Context,
     image: &gltf::json::Image,

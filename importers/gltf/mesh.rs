@@ -7,6 +7,7 @@ use gltf::json::{
     mesh::{Mode, Primitive, Semantic},
     validation::Checked,
 };
+use rayon::prelude::*;
 
 use super::{
     Asset, Context, accessor::Accessor, at, attributes::Vertices, deform::Shape, material::Materials,
@@ -116,7 +117,7 @@ fn primitive(
     if mode == Mode::Triangles && corners.len() % 3 != 0 {
         context.report.warn(element, "the number of corners is no multiple of three; the rest is dropped");
     }
-    let mut triangles = topology::triangles(mode, &corners);
+    let mut triangles = topology::triangles(mode, corners);
     if triangles.is_empty() {
         context.report.warn(element, "the primitive has no triangles");
         return Ok(None);
@@ -147,8 +148,8 @@ fn corners(
         context.report.approximate(&element, "the accessor has no data, all its elements are zero");
     }
     context.charge(u64::from(indices.count) * CORNER, &element)?;
-    let corners: Vec<_> = (0..indices.count).map(|i| indices.index(i)).collect();
-    match corners.iter().position(|&corner| corner >= count) {
+    let corners = indices.indices();
+    match corners.par_iter().position_first(|&corner| corner >= count) {
         Some(at) => {
             let corner = corners.get(at).copied().unwrap_or_default();
             let message = format!("points to vertex {corner}, but there are only {count}");

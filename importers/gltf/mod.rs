@@ -16,6 +16,7 @@ mod buffers;
 mod camera;
 mod check;
 mod container;
+mod cube;
 mod deform;
 mod document;
 mod draco;
@@ -30,6 +31,7 @@ mod material;
 mod mesh;
 mod meshopt;
 mod node;
+mod surroundings;
 mod texture;
 mod topology;
 mod uri;
@@ -153,7 +155,10 @@ fn convert(file: Vec<u8>, mut context: Context) -> Result<Imported, Diagnostic> 
     let cameras = camera::cameras(&asset.root, &mut context, &mut scene);
     node::nodes(&asset.root, &mut context, &mut scene, node::Parts { places, meshes, lights, cameras })?;
     instances::expand(&asset, &mut context, &mut scene)?;
-    scene.roots = node::roots(&asset.root, &parents, &mut context);
+    let shown = asset.root.scene.map_or(0, |scene| scene.value());
+    scene.roots = node::roots(&asset.root, shown, &parents, &mut context);
+    let surroundings = surroundings::place(&asset, shown, &mut context, &mut scene)?;
+    scene.roots.extend(surroundings);
     if scene.roots.is_empty() {
         context.report.add(Diagnostic::warning("the scene places no nodes, there is nothing to see"));
     }

@@ -140,10 +140,14 @@ fn transform(node: &gltf::json::Node, context: &mut Context, element: &str) -> R
     }
 }
 
-/// The roots of the default scene, or of the first, or all nodes without parent if there are no scenes.
-pub(super) fn roots(root: &Root, parents: &[Option<usize>], context: &mut Context) -> Vec<Id<Node>> {
+/// The roots of the scene at `index`, or all nodes without parent if there are no scenes.
+pub(super) fn roots(
+    root: &Root,
+    index: usize,
+    parents: &[Option<usize>],
+    context: &mut Context,
+) -> Vec<Id<Node>> {
     let is_root = |i: usize| parents.get(i) == Some(&None);
-    let index = root.scene.map_or(0, |scene| scene.value());
     let Some(scene) = root.scenes.get(index) else {
         return (0..root.nodes.len()).filter(|&i| is_root(i)).map(Id::new).collect();
     };

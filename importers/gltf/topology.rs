@@ -1,9 +1,12 @@
 //! From a primitive's corners to triangles over the vertices that they use.
 
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
 use gltf::json::mesh::Mode;
+use rayon::prelude::*;
 
 /// The triangles of a primitive with these corners, counter-clockwise (specification, section 3.7.2.1).
-pub(super) fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
+pub(super) fn triangles(mode: Mode, mut corners: Vec<u32>) -> Vec<[u32; 3]> {
     match mode {
         Mode::TriangleStrip => corners
             .windows(3)
@@ -22,7 +25,12 @@ pub(super) fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
                 })
                 .collect()
         }
-        Mode::Triangles => corners.chunks_exact(3).filter_map(|corners| corners.try_into().ok()).collect(),
+        Mode::Triangles => {
+            corners.truncate(corners.len() - corners.len() % 3);
+            // Without a copy where its memory can be divided by three too.
+            bytemuck::allocation::try_cast_vec(corners)
+                .unwrap_or_else(|(_, corners)| bytemuck::cast_slice(&corners).to_vec())
+        }
         Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
     }
 }
@@ -35,21 +43,23 @@ pub(super) fn compact(triangles: &mut [[u32; 3]], count: u32) -> Vec<u32> {
 }
 
 fn by_table(triangles: &mut [[u32; 3]], count: u32) -> Vec<u32> {
-    let mut table = vec![u32::MAX; count as usize];
-    for corner in triangles.as_flattened() {
-        if let Some(entry) = table.get_mut(*corner as usize) {
-            *entry = 0;
+    let is_used: Vec<AtomicBool> = (0..count).map(|_| AtomicBool::new(false)).collect();
+    triangles.as_flattened().par_iter().for_each(|&corner| {
+        if let Some(entry) = is_used.get(corner as usize) {
+            entry.store(true, Relaxed);
         }
-    }
-    let mut used = Vec::new();
-    for (vertex, entry) in (0..count).zip(&mut table) {
-        if *entry == 0 {
-            *entry = used.len() as u32;
-            used.push(vertex);
+    });
+    let used: Vec<u32> =
+        (0..count).zip(&is_used).filter(|(_, is_used)| is_used.load(Relaxed)).map(|(i, _)| i).collect();
+    if used.len() < count as usize {
+        let mut table = vec![0; count as usize];
+        for (new, &vertex) in (0..).zip(&used) {
+            if let Some(entry) = table.get_mut(vertex as usize) {
+                *entry = new;
+            }
         }
-    }
-    for corner in triangles.as_flattened_mut() {
-        *corner = table.get(*corner as usize).copied().unwrap_or_default();
+        let renumber = |corner: &mut u32| *corner = table.get(*corner as usize).copied().unwrap_or_default();
+        triangles.as_flattened_mut().par_iter_mut().for_each(renumber);
     }
     used
 }
@@ -70,11 +80,11 @@ mod tests {
 
     #[test]
     fn strips_and_fans_keep_the_winding() {
-        let corners = [0, 1, 2, 3, 4];
-        assert_eq!(triangles(Mode::TriangleStrip, &corners), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
-        assert_eq!(triangles(Mode::TriangleFan, &corners), [[1, 2, 0], [2, 3, 0], [3, 4, 0]]);
-        assert_eq!(triangles(Mode::Triangles, &corners), [[0, 1, 2]]);
-        assert!(triangles(Mode::Lines, &corners).is_empty());
+        let corners = vec![0, 1, 2, 3, 4];
+        assert_eq!(triangles(Mode::TriangleStrip, corners.clone()), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+        assert_eq!(triangles(Mode::TriangleFan, corners.clone()), [[1, 2, 0], [2, 3, 0], [3, 4, 0]]);
+        assert_eq!(triangles(Mode::Triangles, corners.clone()), [[0, 1, 2]]);
+        assert!(triangles(Mode::Lines, corners).is_empty());
     }
 
     #[test]

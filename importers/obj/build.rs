@@ -6,7 +6,7 @@ use ajar_scene::{Diagnostic, Id, Loss, Material, Mesh, Node, Scene};
 use glam::{DVec3, Vec2, Vec3};
 
 use super::geometry::{Corner, Face, Geometry, NONE, Part};
-use crate::{polygon::ears, report::Report};
+use crate::{polygon::ears, report::Report, srgb};
 
 /// Which normal a vertex has; vertices that differ in it are not joined.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -181,17 +181,11 @@ impl Builder {
             }
             if let Some(colors) = &mut mesh.colors {
                 let color = geometry.colors.get(position).copied().unwrap_or(Vec3::ONE);
-                colors.push(Vec3::from_array(color.to_array().map(linear)).extend(1.0));
+                colors.push(Vec3::from_array(color.to_array().map(srgb::linear)).extend(1.0));
             }
             (mesh.positions.len() - 1) as u32
         })
     }
-}
-
-/// The sRGB transfer function (IEC 61966-2-1), to linear.
-fn linear(value: f32) -> f32 {
-    let value = value.clamp(0.0, 1.0);
-    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
 fn place<'a>(

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Id;
 
-/// Encoded pixels, not decoded by importers.
+/// Encoded pixels; importers leave files as they are, but for cube maps, which they unroll.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub enum ImageSource {
     /// A file, already checked to lie below a folder the scene may read.

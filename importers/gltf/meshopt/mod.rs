@@ -9,7 +9,7 @@ use ajar_scene::Diagnostic;
 use gltf::json::buffer;
 use serde::Deserialize;
 
-use super::{Context, extensions};
+use super::{Context, container::Bytes, extensions};
 
 /// The extension's name.
 const NAME: &str = "EXT_meshopt_compression";
@@ -42,7 +42,7 @@ enum Mode {
 /// The stream is broken, or memory runs out.
 pub(super) fn decode(
     view: &buffer::View,
-    loaded: &[Result<Vec<u8>, Diagnostic>],
+    loaded: &[Result<Bytes, Diagnostic>],
     context: &mut Context,
     element: &str,
 ) -> Result<Option<Vec<u8>>, Diagnostic> {

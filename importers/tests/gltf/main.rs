@@ -21,6 +21,7 @@ mod lights;
 mod materials;
 mod motion;
 mod nodes;
+mod surroundings;
 mod variants;
 
 use ajar_scene::{Diagnostic, Imported, Mesh, Severity};
