@@ -15,3 +15,5 @@ mod obj;
 #[cfg(unix)]
 mod plug_in;
 mod scene_file;
+#[cfg(target_os = "linux")]
+mod traced;
