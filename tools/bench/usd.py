@@ -5,7 +5,7 @@
 
 makes a binary stage of two million triangles with normals and texture coordinates, once with an attribute a point and
 once with one a corner, as many exporters write. It times a Python program that opens it and reads the same arrays, and
-`ajar validate`, which imports it and checks everything. Both take turns; the fastest of each counts.
+`ajar inspect`, which imports it. Both take turns; the fastest of each counts.
 """
 
 import os
@@ -80,7 +80,7 @@ def main(ajar):
         for interpolation in ("vertex", "faceVarying"):
             stage = Path(folder) / f"{interpolation}.usdc"
             write(stage, interpolation)
-            commands = [sys.executable, "-c", READER, stage], [ajar, "validate", stage]
+            commands = [sys.executable, "-c", READER, stage], [ajar, "inspect", stage]
             times = np.array([[seconds(command) for command in commands] for _ in range(TURNS)])
             alone, through = times.min(axis=0)
             print(
