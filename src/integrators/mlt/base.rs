@@ -156,8 +156,9 @@ pub fn render(
         .collect()
 }
 
-/// Mean brightness of the samples of each pixel, without light seen directly.
-pub fn means(space: &Space<'_>, settings: &Settings, round: u32) -> Vec<f64> {
+/// Mean brightness of the samples of each pixel, without light seen directly. One pixel speaks for a square of them,
+/// `step` on each side.
+pub fn means(space: &Space<'_>, settings: &Settings, round: u32, step: usize) -> Vec<f64> {
     struct Indirect(f64);
     impl Visitor for Indirect {
         fn found(&mut self, path: &Found<'_>) {
@@ -166,18 +167,23 @@ pub fn means(space: &Space<'_>, settings: &Settings, round: u32) -> Vec<f64> {
             }
         }
     }
-    (0..space.window.pixels())
+    let mean = |pixel| {
+        let mut sum = Indirect(0.0);
+        for sample in settings.samples(round) {
+            trace(space, settings.seed, pixel, sample, &mut sum);
+        }
+        sum.0 / f64::from(settings.samples_per_round)
+    };
+    let width = space.window.width() as usize;
+    let columns = width.div_ceil(step);
+    let rows = (space.window.pixels() / width).div_ceil(step);
+    let found: Vec<f64> = (0..columns * rows)
         .into_par_iter()
-        .map(|pixel| {
-            if space.cancelled() {
-                return 0.0;
-            }
-            let mut sum = Indirect(0.0);
-            for sample in settings.samples(round) {
-                trace(space, settings.seed, pixel, sample, &mut sum);
-            }
-            sum.0 / f64::from(settings.samples_per_round)
-        })
+        .map(|square| (square / columns * width + square % columns) * step)
+        .map(|pixel| if space.cancelled() { 0.0 } else { mean(pixel) })
+        .collect();
+    (0..space.window.pixels())
+        .map(|pixel| found[pixel / width / step * columns + pixel % width / step])
         .collect()
 }
 

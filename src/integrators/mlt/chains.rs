@@ -23,6 +23,8 @@ pub struct Chains<'a> {
     pub kernel: Kernel<'a>,
     /// The round; pilots have numbers of their own.
     pub round: u32,
+    /// Mutations of each chain.
+    pub length: u32,
     /// Whether to learn which mutations serve which paths.
     pub learning: bool,
 }
@@ -69,7 +71,7 @@ impl<'a> Chains<'a> {
                         }
                         find_seed(index, tracer, path)?;
                         chain.start(path, stream(index));
-                        chain.run(metropolis.chain_length, &record);
+                        chain.run(self.length, &record);
                         Some(std::mem::take(&mut chain.stats))
                     };
                     let stats = (group..count).step_by(groups).map(run).collect();
@@ -81,7 +83,7 @@ impl<'a> Chains<'a> {
         for Group { stats, learner } in found {
             for stats in stats {
                 match stats {
-                    Some(stats) => totals.add_chain(&stats, metropolis.chain_length),
+                    Some(stats) => totals.add_chain(&stats, self.length),
                     None => totals.lost_seeds += 1,
                 }
             }

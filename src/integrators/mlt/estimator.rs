@@ -46,10 +46,7 @@ impl Integrator for Ajar {
 
     fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a> {
         let chains = PlainChains::new(cx);
-        let plan = plan(&chains, self.always);
-        if plan.mutations_per_sample == 0.0 {
-            return PathTracer.prepare(cx);
-        }
+        let Some(plan) = plan(&chains, self.always) else { return PathTracer.prepare(cx) };
         let (space, mutations, table) = (chains.space, chains.mutations, chains.table);
         Box::new(AjarRounds { cx, space, plan, mutations, table, totals: Mutex::default() })
     }
@@ -93,18 +90,18 @@ impl Rounds for AjarRounds<'_> {
         let total = left.iter().sum::<f64>() / samples
             + found.iter().map(|c| c.weight).sum::<f64>() / f64::from(beside);
         let mutations = self.plan.mutations_per_sample * samples;
-        let length = f64::from(settings.metropolis.chain_length);
-        let count = (mutations / length).ceil() as usize;
+        let length = settings.metropolis.chain_length;
+        let count = (mutations / f64::from(length)).ceil() as usize;
         if total <= 0.0 || self.cx.cancelled() {
             return;
         }
         let u = Rng::new(settings.seed, Purpose::Resampling, round, 0).f64();
         let step = total / count as f64;
         let seeds = spread((&left, 1.0 / samples), (&found, 1.0 / f64::from(beside)), step, u);
-        let step = total * pixels as f64 / (seeds.len() as f64 * length);
+        let step = total * pixels as f64 / (seeds.len() as f64 * f64::from(length));
         let (mutations, table) = (self.mutations.as_slice(), &self.table);
         let kernel = Kernel { space: self.space, mutations, table, target: &split };
-        let totals = Chains { cx: self.cx, kernel, round, learning: false }.run(
+        let totals = Chains { cx: self.cx, kernel, round, length, learning: false }.run(
             seeds.len(),
             |index, tracer, path| match seeds[index] {
                 Seed::Base(pixel, rest) => base::replay(&split, settings, round, (pixel, rest), path),

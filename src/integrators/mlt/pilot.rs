@@ -7,26 +7,35 @@ use ajar_render::{film::Film, math::scalar};
 
 use super::{
     base::{self, Split},
-    path::Space,
-    plain::PlainChains,
+    path::{Path, Space},
+    plain::{PlainChains, Run},
+    target::Aim,
 };
 use crate::Settings;
 
-/// Mutations a pixel that find the brightness, and then what they would cost and gain.
+/// Mutations of the first look, which spares easy scenes the rest.
+const ROUGH_MUTATIONS: u64 = 1 << 17;
+/// How much smaller the error of paths alone must be for the first look to decide: it is right within a third.
+const CLEARLY: f64 = 0.7;
+/// Mutations a pixel that find the brightness, and fewest and most of all: large images are learned more coarsely.
 const BRIGHTNESS_MUTATIONS: u64 = 12;
-const GAIN_MUTATIONS: u64 = 4;
-/// Most mutations of either pilot: large images are learned more coarsely.
+const FEWEST_MUTATIONS: u64 = 1 << 20;
 const MOST_MUTATIONS: u64 = 1 << 22;
+/// Steps of each chain: they begin where bidirectional samples say, and need not go far from there.
+const LENGTH: u32 = 128;
+/// Mutations that find what chains would cost and gain.
+const GAIN_MUTATIONS: u64 = 1 << 19;
 /// Mutations that the square of pixels to average over should hold.
 const AVERAGED: f64 = 300.0;
-/// Eye paths a pixel, twice, that look for what the chains missed; one in large images.
-const WALKS: u32 = 2;
-const LARGE: usize = 1 << 19;
+/// Eye paths, twice, that look for what the chains missed, and most a pixel.
+const WALKS: usize = 1 << 17;
+const MOST_WALKS: u32 = 2;
 /// Round numbers of the pilots.
 const BRIGHTNESS_ROUND: u32 = u32::MAX - 1;
 const GAIN_ROUND: u32 = u32::MAX - 2;
+const ROUGH_ROUND: u32 = u32::MAX - 4;
 /// Least brightness, relative to the mean.
-const FLOOR: f64 = 0.02;
+const FLOOR: f64 = 0.1;
 /// Steps that a chain needs to forget a pixel: measured between 4 in easy scenes and 47 behind a door.
 const CORRELATION: f64 = 15.0;
 /// Even spread makes an eye path worth about this many random ones where paths alone do well.
@@ -37,7 +46,7 @@ const OVERHEAD: f64 = 1.5;
 const BASE_SHARE: [f64; 2] = [0.3, 0.7];
 
 /// Share of the work that looks for seeds besides the base.
-const SEED_WORK: f64 = 0.1;
+const SEED_WORK: f64 = 0.3;
 /// What a bidirectional sample, its paths measured, costs in eye paths.
 const BIDIRECTIONAL_COST: f64 = 8.0;
 
@@ -46,7 +55,7 @@ const BIDIRECTIONAL_COST: f64 = 8.0;
 pub struct Plan {
     /// Mean of the channels of each pixel of the window, smoothed, nowhere 0.
     pub brightness: Vec<f64>,
-    /// Mutations for each eye path; 0 where the base is better alone.
+    /// Mutations for each eye path.
     pub mutations_per_sample: f64,
     /// Bidirectional samples for each eye path, which look for seeds too.
     pub beside: f64,
@@ -54,53 +63,72 @@ pub struct Plan {
     pub residual: f64,
 }
 
-/// Makes the plan; `always` asks for chains even where they do not pay.
-pub fn plan(chains: &PlainChains<'_>, always: bool) -> Plan {
-    let brightness = brightness(chains);
-    let split = Split { space: chains.space, brightness: &brightness, beside: 0.0 };
-    let gain = gain(chains, &split);
-    let useful = gain.filter(|gain| always || !gain.is_path_better());
-    let mutations_per_sample = useful.map_or(0.0, |gain| gain.mutations_per_sample());
-    let beside = useful.map_or(0.0, |gain| gain.beside(mutations_per_sample));
-    Plan { mutations_per_sample, beside, residual: gain.map_or(0.0, |gain| gain.residual), brightness }
+/// Makes the plan; none where path tracing is better alone. `always` asks for chains wherever they find light.
+pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
+    let pays = |gain: &Gain, least| always || gain.advantage() > least;
+    let rough = seen_by_chains(chains, None, ROUGH_MUTATIONS);
+    gain_over(chains, &rough, ROUGH_MUTATIONS).filter(|gain| pays(gain, CLEARLY))?;
+    // Chains may have missed what walks find easily. A brightness that is too low costs much, one that is too high
+    // little.
+    let chained = seen_by_chains(chains, Some(&rough), mutations(chains));
+    let brightness: Vec<f64> = chained.iter().zip(seen_by_walks(chains)).map(|(a, b)| a.max(b)).collect();
+    let gain = gain_over(chains, &brightness, GAIN_MUTATIONS);
+    let gain = gain.filter(|gain| pays(gain, 1.0))?;
+    let mutations_per_sample = gain.mutations_per_sample();
+    let beside = gain.beside(mutations_per_sample);
+    Some(Plan { brightness, mutations_per_sample, beside, residual: gain.residual })
 }
 
-fn brightness(chains: &PlainChains<'_>) -> Vec<f64> {
+/// Pixels on each side over which to average `samples` of `pixels`.
+fn reach(samples: u64, pixels: usize) -> usize {
+    let side = (AVERAGED * pixels as f64 / samples as f64).sqrt();
+    ((side - 1.0) / 2.0).ceil().max(0.0) as usize
+}
+
+/// Mutations that find the brightness.
+fn mutations(chains: &PlainChains<'_>) -> u64 {
+    let pixels = chains.space.window.pixels() as u64;
+    (BRIGHTNESS_MUTATIONS * pixels).clamp(FEWEST_MUTATIONS, MOST_MUTATIONS)
+}
+
+/// Brightness of each pixel as so many mutations find it, nowhere 0. Those that visit pixels in proportion to
+/// their brightness learn little of dark ones; they do better relative to what is known `before`.
+fn seen_by_chains(chains: &PlainChains<'_>, before: Option<&[f64]>, mutations: u64) -> Vec<f64> {
     let space = &chains.space;
     let pixels = space.window.pixels();
     let mut film = Film::new(pixels, crate::brightness(space.world, space.max_depth));
     let round = film.round();
-    let mutations = (BRIGHTNESS_MUTATIONS * pixels as u64).min(MOST_MUTATIONS);
-    chains.render(BRIGHTNESS_ROUND, mutations, |path, aim, share| {
+    let record = |path: &Path, aim: &Aim, share: f64| {
         if let Some(pixel) = space.pixel(path.raster) {
             round.add(pixel, aim.deposit * (share * pixels as f64));
         }
-    });
+    };
+    let number = if before.is_some() { BRIGHTNESS_ROUND } else { ROUGH_ROUND };
+    chains.render(&Run { length: LENGTH, relative_to: before, ..chains.run(number, mutations) }, record);
     film.merge(&round, 1.0);
-    let width = space.window.width() as usize;
-    // Pixels on each side over which to average.
-    let side = (AVERAGED * pixels as f64 / mutations as f64).sqrt();
-    let reach = ((side - 1.0) / 2.0).ceil() as usize;
-    let walks = if pixels > LARGE { 1 } else { WALKS };
     let found: Vec<f64> = (0..pixels).map(|pixel| scalar(film.mean(pixel))).collect();
-    let walked = [0, 1].map(|half| {
-        // Other samples than those of the image, which must not depend on its own brightness.
-        let seed = !chains.cx.settings.seed;
-        let settings = Settings { seed, samples_per_round: walks, ..chains.cx.settings.clone() };
-        smooth(&base::means(space, &settings, half), width, reach)
-    });
     let mean = found.iter().sum::<f64>() / pixels as f64;
     if mean <= 0.0 {
         return vec![1.0; pixels];
     }
-    // Chains may have missed what walks find easily. A brightness that is too low costs much, one that is too high
-    // little; what only one half of the walks found is a firefly.
-    let walked = walked[0].iter().zip(&walked[1]).map(|(a, b)| a.min(*b));
-    smooth(&found, width, reach)
-        .iter()
-        .zip(walked)
-        .map(|(b, walked)| b.max(walked).max(FLOOR * mean))
-        .collect()
+    let smooth = smooth(&found, space.window.width() as usize, reach(mutations, pixels));
+    smooth.iter().map(|b| b.max(FLOOR * mean)).collect()
+}
+
+/// Brightness of each pixel as two sets of eye paths agree on it: what only one of them found is a firefly.
+fn seen_by_walks(chains: &PlainChains<'_>) -> Vec<f64> {
+    let space = &chains.space;
+    let pixels = space.window.pixels();
+    let reach = reach(mutations(chains), pixels);
+    let step = (pixels as f64 / WALKS as f64).sqrt().ceil().max(1.0) as usize;
+    let walks = ((WALKS / pixels) as u32).clamp(1, MOST_WALKS);
+    let [a, b] = [0, 1].map(|half| {
+        // Other samples than those of the image, which must not depend on its own brightness.
+        let seed = !chains.cx.settings.seed;
+        let settings = Settings { seed, samples_per_round: walks, ..chains.cx.settings.clone() };
+        smooth(&base::means(space, &settings, half, step), space.window.width() as usize, reach)
+    });
+    a.iter().zip(b).map(|(a, b)| a.min(b)).collect()
 }
 
 /// Mean over the square of pixels around each.
@@ -141,10 +169,10 @@ impl Gain {
         SEED_WORK * work / (BIDIRECTIONAL_COST * self.path_cost)
     }
 
-    /// Whether path tracing alone has the smaller error.
-    fn is_path_better(&self) -> bool {
+    /// Squared error of path tracing alone over that of base and chains, in equal time.
+    fn advantage(&self) -> f64 {
         let (base, chains) = self.work();
-        self.path * self.path_cost < EVENNESS * (base.sqrt() + chains.sqrt()).powi(2)
+        self.path * self.path_cost / (EVENNESS * (base.sqrt() + chains.sqrt()).powi(2))
     }
 
     /// Variances times costs of base and chains.
@@ -163,26 +191,23 @@ impl Gain {
 
 /// Chains see paths in proportion to what they contribute: the mean of C/μ over them is the second moment of the path
 /// tracer, however seldom it would find them itself.
-fn gain(chains: &PlainChains<'_>, split: &Split<'_>) -> Option<Gain> {
+fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Option<Gain> {
     let space = &chains.space;
     // Sums are made per row of pixels and then in order: the order of threads must not show.
     let rows = Film::new(space.window.pixels(), 1.0);
     let (paths, bases, residuals) = (rows.round(), rows.round(), rows.round());
-    let totals = chains.render(
-        GAIN_ROUND,
-        (GAIN_MUTATIONS * space.window.pixels() as u64).min(MOST_MUTATIONS),
-        |path, aim, share| {
-            let Some(pixel) = space.pixel(path.raster) else { return };
-            let brightness = split.brightness[pixel];
-            let relative = scalar(aim.deposit) * share / brightness;
-            let c = base::contribution(path);
-            let left = Split::residual(c, brightness);
-            let moment = |x: f64| ajar_render::math::Rgb::splat(x.min(MOST) * relative);
-            paths.add(pixel, moment(c / brightness));
-            bases.add(pixel, moment((1.0 - left).powi(2) * if c.is_finite() { c / brightness } else { 0.0 }));
-            residuals.add(pixel, moment(left));
-        },
-    );
+    let run = Run { length: LENGTH, ..chains.run(GAIN_ROUND, mutations) };
+    let totals = chains.render(&run, |path, aim, share| {
+        let Some(pixel) = space.pixel(path.raster) else { return };
+        let brightness = brightness[pixel];
+        let relative = scalar(aim.deposit) * share / brightness;
+        let c = base::contribution(path);
+        let left = Split::residual(c, brightness);
+        let moment = |x: f64| ajar_render::math::Rgb::splat(x.min(MOST) * relative);
+        paths.add(pixel, moment(c / brightness));
+        bases.add(pixel, moment((1.0 - left).powi(2) * if c.is_finite() { c / brightness } else { 0.0 }));
+        residuals.add(pixel, moment(left));
+    });
     if totals.stats.steps() == 0 {
         return None;
     }

@@ -16,7 +16,7 @@ use super::{
     mutations::mutations,
     path::{Path, Space},
     seeds::{Bootstrap, Pool, resample},
-    target::{Aim, Plain},
+    target::{Aim, Plain, Relative, Target},
 };
 use crate::{Context, Integrator, Report, Rounds, bdpt::MAX_VERTICES};
 
@@ -52,6 +52,21 @@ impl Integrator for Mlt {
     }
 }
 
+/// What chains are to do in a round.
+#[derive(Clone, Copy, Debug)]
+pub struct Run<'b> {
+    /// The round; pilots have numbers of their own.
+    pub round: u32,
+    /// Mutations of all chains, about.
+    pub mutations: u64,
+    /// Mutations of each chain.
+    pub length: u32,
+    /// If given, paths are visited in proportion to their contributions relative to this brightness of each pixel.
+    pub relative_to: Option<&'b [f64]>,
+    /// Whether to learn which mutations serve which paths.
+    pub learning: bool,
+}
+
 /// Chains that visit paths in proportion to their contribution.
 pub struct PlainChains<'a> {
     /// Settings and the request to stop.
@@ -77,7 +92,9 @@ impl<'a> PlainChains<'a> {
         chains.least_samples = chains.samples_that_find();
         if choice == Choice::Learned {
             let count = (space.window.pixels() as u64).clamp(1 << 17, 1 << 21);
-            let learned = chains.render_learning(LEARNING_ROUND, count, true, |_, _, _| ()).learned;
+            let learned = chains
+                .render(&Run { learning: true, ..chains.run(LEARNING_ROUND, count) }, |_, _, _| ())
+                .learned;
             chains.table = learned.map_or_else(|| usual.clone(), |learner| learner.table(&usual));
         }
         chains
@@ -96,28 +113,28 @@ impl<'a> PlainChains<'a> {
         samples
     }
 
+    /// A usual run of chains as long as the settings say.
+    pub fn run(&self, round: u32, mutations: u64) -> Run<'static> {
+        let length = self.cx.settings.metropolis.chain_length;
+        Run { round, mutations, length, relative_to: None, learning: false }
+    }
+
     fn bootstrap(&self, round: u32, samples: u32) -> Bootstrap<'a> {
         Bootstrap { space: self.space, seed: self.cx.settings.seed, round, samples }
     }
 
-    /// One round of about `mutations` mutations. `record` takes a path, its aim, and how much of the window's mean
-    /// brightness its steps stand for.
-    pub fn render(&self, round: u32, mutations: u64, record: impl Fn(&Path, &Aim, f64) + Sync) -> Totals {
-        self.render_learning(round, mutations, false, record)
-    }
-
-    fn render_learning(
-        &self,
-        round: u32,
-        mutations: u64,
-        learning: bool,
-        record: impl Fn(&Path, &Aim, f64) + Sync,
-    ) -> Totals {
-        let length = self.cx.settings.metropolis.chain_length;
+    /// One round. `record` takes a path, its aim, and how much of the window's mean brightness its steps stand for.
+    pub fn render(&self, run: &Run<'_>, record: impl Fn(&Path, &Aim, f64) + Sync) -> Totals {
+        let Run { round, mutations, length, relative_to, learning } = *run;
+        let relative = relative_to.map(|brightness| Relative { space: self.space, brightness });
+        let target: &dyn Target = relative.as_ref().map_or(&Plain, |relative| relative);
         let count = mutations.div_ceil(length.into()).max(1) as usize;
         let samples = (mutations / MUTATIONS_PER_SAMPLE).max(self.least_samples.into()) as u32;
         let bootstrap = self.bootstrap(round, samples);
         let mut candidates = bootstrap.candidates();
+        for candidate in &mut candidates {
+            candidate.weight /= relative_to.map_or(1.0, |brightness| brightness[candidate.pixel as usize]);
+        }
         if candidates.is_empty() {
             return Totals { empty_rounds: 1, ..Totals::default() };
         }
@@ -127,8 +144,8 @@ impl<'a> PlainChains<'a> {
         let seeds = resample(&mut candidates, count, &mut rng);
         let step = brightness / (count as f64 * f64::from(length));
         let (mutations, table) = (self.mutations.as_slice(), &self.table);
-        let kernel = Kernel { space: self.space, mutations, table, target: &Plain };
-        let totals = Chains { cx: self.cx, kernel, round, learning }.run(
+        let kernel = Kernel { space: self.space, mutations, table, target };
+        let totals = Chains { cx: self.cx, kernel, round, length, learning }.run(
             count,
             |index, tracer, path| bootstrap.replay(&candidates[seeds[index] as usize], tracer, path),
             |path, aim, steps| record(path, aim, steps * step),
@@ -152,7 +169,7 @@ impl Rounds for MltRounds<'_> {
         let pixels = space.window.pixels();
         direct::render(space, (settings.seed, round), (settings.samples_per_round / 8).max(1), film);
         let mutations = u64::from(settings.samples_per_round) * pixels as u64;
-        let totals = self.chains.render(round, mutations, |path, aim, share| {
+        let totals = self.chains.render(&self.chains.run(round, mutations), |path, aim, share| {
             if let Some(pixel) = space.pixel(path.raster) {
                 film.add(pixel, aim.deposit * (share * pixels as f64));
             }

@@ -2,7 +2,7 @@
 
 use ajar_render::math::Rgb;
 
-use super::path::Path;
+use super::path::{Path, Space};
 
 /// What a target makes of a path.
 #[derive(Clone, Copy, Debug)]
@@ -26,5 +26,21 @@ pub struct Plain;
 impl Target for Plain {
     fn aim(&self, x: &Path) -> Aim {
         Aim { weight: 1.0, deposit: x.f / x.scalar() }
+    }
+}
+
+/// Paths in proportion to their contribution relative to the brightness of their pixel: all pixels are visited alike.
+#[derive(Clone, Copy, Debug)]
+pub struct Relative<'a> {
+    /// Where paths live.
+    pub space: Space<'a>,
+    /// Brightness of each pixel of the window, nowhere 0.
+    pub brightness: &'a [f64],
+}
+
+impl Target for Relative<'_> {
+    fn aim(&self, x: &Path) -> Aim {
+        let brightness = self.space.pixel(x.raster).map_or(1.0, |pixel| self.brightness[pixel]);
+        Aim { weight: 1.0 / brightness, deposit: x.f * (brightness / x.scalar()) }
     }
 }

@@ -35,7 +35,7 @@ use blas::{Blas, Candidate};
 use tlas::Tlas;
 
 pub use assemble::Previous;
-pub use offset::{Anchor, offset_origin, segment};
+pub use offset::{Anchor, inside, offset_origin, segment};
 
 /// One placement of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]

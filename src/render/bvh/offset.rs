@@ -21,6 +21,35 @@ pub(super) fn rounding(reach: f64, extent: f64) -> f64 {
     EPSILON * (2.0 * reach + 8.0 * extent)
 }
 
+/// How many roundings a start keeps from the edges: enough where surfaces meet at 30° or more.
+const EDGE_ROUNDINGS: f64 = 4.0;
+
+/// The point `uv` of a triangle, moved no farther than needed to be some `rounding` away from its edges: a ray that
+/// starts nearer to an edge may do so behind the triangle on the other side, and then leaves a closed mesh.
+#[inline]
+pub fn inside([a, b, c]: &[DVec3; 3], uv: [f64; 2], rounding: f64) -> [f64; 2] {
+    let margin = EDGE_ROUNDINGS * rounding;
+    let doubled_area = (*b - *a).cross(*c - *a).length();
+    let weights = [1.0 - uv[0] - uv[1], uv[0], uv[1]];
+    // A weight is the distance from an edge over the height above it.
+    let near = weights.iter().zip([*c - *b, *a - *c, *b - *a]).any(|(weight, edge)| {
+        let distance = (weight * doubled_area).max(0.0);
+        distance * distance < margin * margin * edge.length_squared()
+    });
+    if !near {
+        return uv;
+    }
+    let least = [*c - *b, *a - *c, *b - *a].map(|edge| margin * edge.length() / doubled_area);
+    let spare = 1.0 - least.iter().sum::<f64>();
+    if spare.is_nan() || spare <= 0.0 {
+        // Nothing is that far inside.
+        return uv;
+    }
+    let above: [f64; 3] = std::array::from_fn(|i| (weights[i] - least[i]).max(0.0));
+    let scale = spare / above.iter().sum::<f64>();
+    [least[1] + above[1] * scale, least[2] + above[2] * scale]
+}
+
 /// An end of a connection.
 #[derive(Clone, Copy, Debug)]
 pub struct Anchor {

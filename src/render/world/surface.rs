@@ -6,7 +6,7 @@ use glam::{DVec3, Vec2, Vec4};
 use super::{Instance, World};
 use crate::{
     bsdf::Mode,
-    bvh::Hit,
+    bvh::{Hit, inside},
     material::{Material, Place},
     math::Frame,
     path::{Kind, Site, Vertex},
@@ -144,6 +144,8 @@ impl World {
     pub(super) fn set_surface(&self, site: Site, vertices: &[DVec3; 3], vertex: &mut Vertex) {
         let instance = &self.instances[site.instance as usize];
         let material = &self.materials[instance.material as usize];
+        vertex.rounding = self.geometry.rounding(site.instance, vertices);
+        let site = Site { uv: inside(vertices, site.uv, vertex.rounding), ..site };
         let point = self.point(instance, site.triangle, site.uv);
         let [a, b, c] = *vertices;
         let ng = (b - a).cross(c - a).normalize_or(DVec3::Z) * instance.handedness;
@@ -159,7 +161,6 @@ impl World {
             vertex.bsdf.tilt_coat(shading.frame.to_local(n.unwrap_or(shading.normal)));
         }
         vertex.emitter = instance.first_emitter.map_or(Vertex::NO_EMITTER, |first| first + site.triangle);
-        vertex.rounding = self.geometry.rounding(site.instance, vertices);
         vertex.mode = Mode::Smooth;
     }
 

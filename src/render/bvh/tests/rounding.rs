@@ -4,7 +4,7 @@ use ajar_scene::Mesh;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::{Geometry, blocked, direction, lumpy, placed, rng, soup};
-use crate::bvh::{Anchor, offset_origin, segment};
+use crate::bvh::{Anchor, inside, offset_origin, segment};
 use crate::ray::Ray;
 use crate::rng::Rng;
 
@@ -61,6 +61,53 @@ fn rays_do_not_meet_the_triangle_they_leave() {
             }
         }
     }
+}
+
+/// How many rays into a closed mesh from close to the edges of its triangles leave it; all of them see its `center`.
+fn escapes_from_edges(geometry: &Geometry, triangles: usize, center: DVec3, kept_inside: bool) -> usize {
+    let mut rng = rng(9);
+    let mut escaped = 0;
+    for _ in 0..20_000 {
+        let vertices = geometry.vertices(0, rng.below(triangles) as u32);
+        let rounding = geometry.rounding(0, &vertices);
+        let near = 10f64.powf(-4.0 - 12.0 * rng.f64());
+        let along = (1.0 - near) * rng.f64();
+        let weights = [near, along, 1.0 - near - along];
+        let turn = rng.below(3);
+        let uv = [weights[turn], weights[(turn + 1) % 3]];
+        let [u, v] = if kept_inside { inside(&vertices, uv, rounding) } else { uv };
+        let p = vertices[0] * (1.0 - u - v) + vertices[1] * u + vertices[2] * v;
+        let n = normal(&vertices);
+        let n = if n.dot(center - p) < 0.0 { -n } else { n };
+        let w = direction(&mut rng);
+        let w = if w.dot(n) < 0.0 { -w } else { w };
+        let ray = Ray::new(offset_origin(p, n, w, rounding), w);
+        escaped += usize::from(!blocked(geometry, &ray));
+    }
+    escaped
+}
+
+fn cube() -> Mesh {
+    let positions = (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32)).collect();
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    Mesh { positions, triangles, ..Mesh::default() }
+}
+
+#[test]
+fn rays_from_edges_stay_in_a_closed_mesh() {
+    let mut without = 0;
+    // Flattened, the edges of lumps are sharper than is promised.
+    let lumps = maps().into_iter().take(3).map(|map| (lumpy(4), DVec3::ZERO, map));
+    for (mesh, center, map) in maps().map(|map| (cube(), DVec3::splat(0.5), map)).into_iter().chain(lumps) {
+        let (triangles, center) = (mesh.triangles.len(), map.transform_point3(center));
+        for own in [false, true] {
+            let geometry = placed(mesh.clone(), map, own);
+            assert_eq!(escapes_from_edges(&geometry, triangles, center, true), 0, "{map:?} {own}");
+            without += escapes_from_edges(&geometry, triangles, center, false);
+        }
+    }
+    assert!(without > 100, "this test finds what escapes: {without}");
 }
 
 /// Two parallel squares, the second `gap` above the first.
