@@ -13,7 +13,7 @@ from rules import FixedThreshold, PixelZ, Rule, ajar_compare, idiff, rms
 from synthetic import File, Recipe, file, scene
 from twins import reference, twins
 
-SYNTHETIC = Recipe(width=128, height=96, rounds=ROUNDS, noise=0.5)
+SYNTHETIC = Recipe(width=256, height=192, rounds=ROUNDS, noise=0.5)
 SCENE = "caustic-glass"
 INTEGRATORS = ("path", "mlt")
 # Twins that fixed thresholds are tuned to.
@@ -105,7 +105,7 @@ def synthetic_mutants() -> Iterator[Mutant]:
     """Those whose truth is known."""
     for name, edit in EDITS.items():
         yield Mutant(name, edited(synthetic, edit))
-    yield Mutant("a light off (a quarter of the image, 10 %)", edited(synthetic, scaled(0.9, (..., slice(96, None)))))
+    yield Mutant("a light off (a quarter of the image, 10 %)", edited(synthetic, scaled(0.9, (..., slice(192, None)))))
     yield Mutant("a tile of 16×16, +20 %", edited(synthetic, scaled(1.2, TILE)))
     yield Mutant("albedo swapped", edited(synthetic, swapped))
     yield Mutant("one seed for all rounds", lambda seed: synthetic(seed, equal_rounds=True))
@@ -135,7 +135,7 @@ def sections(home: Path, count: int, trials: int) -> str:
     variance = (SYNTHETIC.noise * scene(SYNTHETIC.width, SYNTHETIC.height)) ** 2
     good = [synthetic(seed) for seed in range(count)]
     right = synthetic(REFERENCE, rounds=4 * ROUNDS).write(home / "reference.exr")
-    title = "synthetic images of 128×96 pixels with 50 % of noise a pixel and round"
+    title = "synthetic images of 256×192 pixels with 50 % of noise a pixel and round"
     text = table(title, home, right, good, variance, list(synthetic_mutants()), trials)
     for integrator in INTEGRATORS:
         seeds = range(1, trials + 1)
