@@ -34,8 +34,8 @@ the root mean square error as in `assert rms < limit`. *z a pixel* is the rule o
 (src/render/tests/test_renders.py), which gets the true variance of every pixel, from all twins. *One seed for all
 rounds* is an image of few rounds that declares no noise.
 
-The synthetic images are as large as a reference may be, and nearly every mutant of them is found. The renders are tiny and as
-noisy as it gets, to see what hides in noise: an image that claims twice its rounds has the right mean and is
+The synthetic images are as large as a reference may be, and nearly every mutant of them is found. The renders are tiny
+and as noisy as it gets, to see what hides in noise: an image that claims twice its rounds has the right mean and is
 betrayed by scatter alone, which takes some thousand blocks; and where 16 rounds of `mlt` differ by a third, a change
 of some percent is within what the image says of itself. More pixels or rounds bring it out, as the last table shows.
 """
