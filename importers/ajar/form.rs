@@ -50,6 +50,7 @@ pub(super) fn scene(text: &[u8], bytes: &[u8], request: &ImportRequest) -> Resul
     meshes.rename(&mut nodes)?;
     imported.render =
         top.remove("render").map(|render| read(render, "render")).transpose()?.unwrap_or_default();
+    imported.variants = read(top.remove("variants").unwrap_or_else(|| json!([])), "variants")?;
     imported.scene = Scene {
         nodes,
         meshes: meshes.scene,

@@ -148,7 +148,7 @@ fn convert(file: Vec<u8>, mut context: Context) -> Result<Imported, Diagnostic> 
     let mut scene = Scene::default();
     let materials = material::materials(&asset, &mut context, &mut scene)?;
     let places = node::Places::new(&asset.root, &mut context, &parents)?;
-    let variants = variants::Variants::chosen(&asset.root, &mut context)?;
+    let (variants, sets) = variants::Variants::chosen(&asset.root, &mut context)?;
     let meshes = mesh::Maker { asset: &asset, materials, variants, globals: &places.globals };
     let meshes = meshes.meshes(&mut context, &mut scene)?;
     let lights = light::lights(&asset.root, &mut context, &mut scene);
@@ -167,7 +167,7 @@ fn convert(file: Vec<u8>, mut context: Context) -> Result<Imported, Diagnostic> 
     let mut met = HashSet::new();
     context.files.retain(|path| met.insert(path.clone()));
     let diagnostics = context.report.finish(&context.request.path);
-    Ok(Imported { scene, diagnostics, files: context.files, ..Imported::default() })
+    Ok(Imported { scene, diagnostics, files: context.files, variants: sets, ..Imported::default() })
 }
 
 /// The document at the moment that is asked for, and its buffers.

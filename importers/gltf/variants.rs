@@ -1,6 +1,6 @@
 //! KHR_materials_variants: which material a primitive has in the variants that were chosen.
 
-use ajar_scene::{Cause, Diagnostic};
+use ajar_scene::{Cause, Diagnostic, VariantSet};
 use gltf::json::{Root, mesh::Primitive};
 use serde::Deserialize;
 
@@ -33,11 +33,11 @@ struct Mapping {
 pub(super) struct Variants(Vec<usize>);
 
 impl Variants {
-    /// Those that the request names.
+    /// Those that the request names, and all there are.
     ///
     /// # Errors
     /// The file has no variant of such a name: tells which it has.
-    pub fn chosen(root: &Root, context: &mut Context) -> Result<Self, Diagnostic> {
+    pub fn chosen(root: &Root, context: &mut Context) -> Result<(Self, Vec<VariantSet>), Diagnostic> {
         let others = root.extensions.as_ref().map(|extensions| &extensions.others);
         let known: Names = extensions::read(others, NAME, "", &mut context.report).unwrap_or_default();
         let names: Vec<_> = known.variants.iter().map(|variant| variant.name.as_str()).collect();
@@ -56,7 +56,11 @@ impl Variants {
                 error.because(Cause::Usage).hint(hint)
             })
         };
-        chosen.iter().map(find).collect::<Result<_, _>>().map(Self)
+        let indices = chosen.iter().map(find).collect::<Result<_, _>>()?;
+        let choices: Vec<_> = names.into_iter().map(str::to_owned).collect();
+        let set = VariantSet { name: String::new(), choices, chosen: chosen.first().cloned() };
+        let sets = [set].into_iter().filter(|set| !set.choices.is_empty());
+        Ok((Self(indices), sets.collect()))
     }
 
     /// The material of a primitive: that of the first chosen variant which says one, else its own.

@@ -85,6 +85,20 @@ impl Choice {
     }
 }
 
+/// Variants of an asset of which one is shown.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VariantSet {
+    /// What it is called: `/Prim:set` in USD; empty in glTF, which has one set.
+    #[serde(default)]
+    pub name: String,
+    /// The variants, by the names that [`Choice::variants`] takes.
+    pub choices: Vec<String>,
+    /// The one that is shown; `None` is what the file shows by itself.
+    #[serde(default)]
+    pub chosen: Option<String>,
+}
+
 impl ImportRequest {
     /// A request with the defaults: only the file's own folder, 8 GiB, the rest pose.
     pub fn new(path: impl Into<PathBuf>) -> Self {
@@ -161,6 +175,8 @@ pub struct Imported {
     pub files: Vec<PathBuf>,
     /// How the asset wants to be rendered where nobody else says it.
     pub render: Preference,
+    /// Which variants there are.
+    pub variants: Vec<VariantSet>,
 }
 
 /// What an asset says about its picture.

@@ -29,8 +29,10 @@ pub use bounds::looking;
 pub use camera::{Camera, Projection};
 pub use defaults::framing_camera;
 pub use diagnostic::{Cause, Diagnostic, Loss, Severity};
-pub use file::{Overrides, SCHEMA, SceneFile, Setting, load, load_asset};
-pub use import::{Choice, Feature, ImportRequest, Imported, Importer, Looked, Moment, Preference};
+pub use file::{Overrides, SCHEMA, SceneFile, Setting, VariedImport, load, load_asset};
+pub use import::{
+    Choice, Feature, ImportRequest, Imported, Importer, Looked, Moment, Preference, VariantSet,
+};
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Channel, Input, Material, NormalMap, TextureInput};
 pub use mesh::Mesh;

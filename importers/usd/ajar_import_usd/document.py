@@ -43,6 +43,7 @@ class Document:
         self.memory_limit = memory_limit
         self.lists: dict[str, list[dict[str, Any]]] = {}
         self.render: dict[str, Any] = {}
+        self.variants: list[dict[str, Any]] = []
         self.chunk: list[bytes | memoryview] = []
         self.size = 0
 
@@ -106,6 +107,8 @@ class Document:
         top = {"ajar": 1, **self.lists}
         if self.render:
             top["render"] = self.render
+        if self.variants:
+            top["variants"] = self.variants
         text = json.dumps(top, separators=(",", ":"), allow_nan=False).encode()
         text += b" " * (-len(text) % 4)
         stream.write(struct.pack("<4sII", b"AJAR", 1, 28 + len(text) + self.size))

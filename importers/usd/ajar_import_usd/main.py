@@ -46,6 +46,7 @@ def convert(args: argparse.Namespace, report: Report) -> Document:
         moment = stage.Moment(args.frame, args.seconds, args.fps)
         opened = stage.open_stage(args.file, args.variant, moment, report)
         document = Document(args.memory_limit)
+        document.variants = stage.variant_sets(opened.stage)
         walk.Walk(opened, document, jail, report).run()
         del held
     return document

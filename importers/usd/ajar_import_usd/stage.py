@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdSkel
@@ -76,14 +77,25 @@ def select(stage: Usd.Stage, variant: str) -> None:
     chosen.SetVariantSelection(choice)
 
 
-def available(stage: Usd.Stage) -> str:
-    """The variants of a stage in words, some of them."""
+def variant_sets(stage: Usd.Stage) -> list[dict[str, Any]]:
+    """The variants of a stage, as `select` takes them, and which are selected."""
     found = []
     for prim in stage.Traverse():
         sets = prim.GetVariantSets()
         for name in sets.GetNames():
-            choices = ", ".join(sets.GetVariantSet(name).GetVariantNames())
-            found.append(f"{prim.GetPath()}:{name}={{{choices}}}")
+            chosen, of = sets.GetVariantSet(name), f"{prim.GetPath()}:{name}"
+            selection = chosen.GetVariantSelection()
+            names = [f"{of}={choice}" for choice in chosen.GetVariantNames()]
+            found.append({"name": of, "choices": names, "chosen": f"{of}={selection}" if selection else None})
+    return found
+
+
+def available(stage: Usd.Stage) -> str:
+    """The variants of a stage in words, some of them."""
+    found = []
+    for of in variant_sets(stage):
+        choices = ", ".join(choice.partition("=")[2] for choice in of["choices"])
+        found.append(f"{of['name']}={{{choices}}}")
     more = f" and {len(found) - 10} more" if len(found) > 10 else ""
     return f"there are {'; '.join(found[:10])}{more}" if found else "the stage has no variants"
 

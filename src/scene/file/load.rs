@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 
 use super::{
-    SceneFile, camera, choice,
+    SceneFile, VariedImport, camera, choice,
     keys::Keys,
     layers, light, material, node, placement,
     report::{Complaint, advice},
@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     Diagnostic, ImportRequest, Imported, Looked, Node, OutputSettings, Overrides, RenderSettings, Scene,
-    Severity,
+    Severity, VariantSet,
 };
 
 /// Reads the scene file of `request`, over the files that it extends, below `overrides`. `import` turns each file it names
@@ -45,8 +45,9 @@ pub fn load_asset(
     overrides: &Overrides,
     imported: Imported,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
-    let Imported { scene, diagnostics, files, render: preference } = imported;
-    let assets = Assets { scene, files, preference };
+    let Imported { scene, diagnostics, files, render: preference, variants } = imported;
+    let varied = varied(stem(&request.path), variants).into_iter().collect();
+    let assets = Assets { scene, files, preference, varied };
     let nothing = |_: &ImportRequest| Ok(Imported::default());
     let file = assemble(overrides.sources(&request.path), request, assets, &nothing)?;
     sound(SceneFile { diagnostics: [file.diagnostics, diagnostics].concat(), ..file })
@@ -127,6 +128,7 @@ fn read(
         output,
         diagnostics: Vec::new(),
         files,
+        varied: assets.varied,
         settings: Vec::new(),
     };
     (file, imported)
@@ -162,8 +164,9 @@ fn add_import(
     let Some(path) = file else { return false };
     let name = name.unwrap_or_else(|| stem(&path));
     match import(&ImportRequest { allowed, choice, looked, ..ImportRequest::new(path) }) {
-        Ok(Imported { scene, diagnostics: found, files, render }) => {
+        Ok(Imported { scene, diagnostics: found, files, render, variants }) => {
             assets.preference.complete(render);
+            assets.varied.extend(varied(name.clone(), variants));
             diagnostics.extend(found);
             assets.files.extend(files);
             let children = assets.scene.append(scene);
@@ -175,6 +178,10 @@ fn add_import(
             false
         }
     }
+}
+
+fn varied(name: String, variants: Vec<VariantSet>) -> Option<VariedImport> {
+    (!variants.is_empty()).then_some(VariedImport { name, variants })
 }
 
 fn stem(path: &Path) -> String {

@@ -29,10 +29,19 @@ pub use load::{load, load_asset};
 pub use overrides::Overrides;
 pub use source::Setting;
 
-use crate::{Diagnostic, OutputSettings, RenderSettings, Scene};
+use crate::{Diagnostic, OutputSettings, RenderSettings, Scene, VariantSet};
 
 /// The JSON Schema of scene files, for editors that complete and check them.
 pub const SCHEMA: &str = include_str!("schema.json");
+
+/// An asset that has variants.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VariedImport {
+    /// What `[[import]]` tables call it.
+    pub name: String,
+    /// Its variants.
+    pub variants: Vec<VariantSet>,
+}
 
 /// What a scene file says.
 #[derive(Clone, Debug)]
@@ -47,6 +56,8 @@ pub struct SceneFile {
     pub diagnostics: Vec<Diagnostic>,
     /// Every file that was read, for watch mode; the scene file comes first.
     pub files: Vec<PathBuf>,
+    /// The imports that have variants.
+    pub varied: Vec<VariedImport>,
     /// Every value that was read, and who set it.
     pub settings: Vec<Setting>,
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::de::DeValue;
 
 use super::{
+    VariedImport,
     keys::Keys,
     report::Complaint,
     source::Source,
@@ -32,6 +33,7 @@ pub(super) struct Assets {
     pub files: Vec<PathBuf>,
     /// What the imports say about the picture; the first to say something counts.
     pub preference: Preference,
+    pub varied: Vec<VariedImport>,
 }
 
 impl Assets {
