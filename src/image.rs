@@ -119,6 +119,8 @@ pub struct Run<'a> {
     pub report: &'a Report,
     /// Hash of the scene.
     pub scene_hash: &'a str,
+    /// What people should know of it.
+    pub comment: Option<&'a str>,
 }
 
 /// Writes EXR and PNG; returns notes for the user.
@@ -241,6 +243,7 @@ fn metadata(run: &Run<'_>) -> Metadata {
         complete: run.complete,
         black: run.is_black(),
         shard: (!run.shard.is_whole()).then_some((run.shard.index, run.shard.count)),
+        comment: run.comment.map(str::to_owned),
         block_variances: block_variances(run),
     }
 }

@@ -60,6 +60,8 @@ pub type Import<'a> = dyn Fn(&ImportRequest) -> Result<Imported, Diagnostic> + '
 pub struct Reading<'a> {
     /// Path and text of a scene file that is not saved yet and lies over everything else.
     pub draft: Option<(&'a Path, &'a str)>,
+    /// Variants of the asset, where it is one that is read, over all others.
+    pub variants: Vec<String>,
     /// Notes the files that are looked for.
     pub looked: Looked,
     /// What importers are asked through.
@@ -90,7 +92,8 @@ pub fn complete(path: &Path, options: &LoadOptions<'_>, file: &mut SceneFile) {
 /// # Errors
 /// Everything that makes it unfit to render.
 pub fn open(path: &Path, options: &LoadOptions<'_>) -> Result<SceneFile, Vec<Diagnostic>> {
-    let reading = Reading { draft: None, looked: Looked::default(), import: &ajar_importers::import };
+    let (looked, import) = (Looked::default(), &ajar_importers::import);
+    let reading = Reading { draft: None, variants: Vec::new(), looked, import };
     open_as(path, options, &reading)
 }
 
@@ -109,8 +112,9 @@ pub fn open_as(
     reading: &Reading<'_>,
 ) -> Result<SceneFile, Vec<Diagnostic>> {
     let memory_limit = options.memory_limit;
+    let chosen = Choice { variants: reading.variants.clone(), ..Choice::default() };
     let import = |request: &ImportRequest| {
-        let choice = options.choice.or(&request.choice);
+        let choice = chosen.or(options.choice).or(&request.choice);
         let mut allowed = request.allowed.clone();
         allowed.extend_from_slice(options.allow);
         (reading.import)(&ImportRequest { allowed, memory_limit, choice, ..request.clone() })

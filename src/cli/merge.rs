@@ -58,6 +58,7 @@ fn execute(args: &Args, log: Format) -> Result<(), Vec<Diagnostic>> {
         report: &report,
         complete: sum.complete,
         scene_hash: &sum.subject.scene,
+        comment: None,
     };
     let to = Destination { exr, png, form: sum.form };
     let notes = results::write(&run, &to, None).map_err(|d| vec![d])?;

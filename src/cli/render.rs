@@ -182,6 +182,7 @@ impl Ready {
             report,
             complete,
             scene_hash,
+            comment: None,
         }
     }
 }

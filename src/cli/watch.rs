@@ -33,6 +33,9 @@ pub(super) struct Args {
     /// Write each finished image here, with a PNG preview beside it
     #[arg(short, long, value_name = "OUT.exr")]
     output: Option<PathBuf>,
+    /// Keep the image of before as EXR in this folder at each change, and the last one at the end
+    #[arg(long, value_name = "FOLDER")]
+    snapshots: Option<PathBuf>,
     /// Run this command after each finished image; AJAR_EXR and AJAR_PNG name its files
     #[arg(long, value_name = "COMMAND")]
     exec: Option<String>,
@@ -106,7 +109,11 @@ fn watch(args: &Args, log: Format) -> Result<Exit, Diagnostic> {
     args.demand.start_threads()?;
     let signals = Signals::new().map_err(|e| failed("handle signals", &e))?;
     let tev = args.tev.as_ref().map(|address| Tev::new(address, "ajar"));
-    let options = Options { poll: args.poll, tev, once: args.once };
+    if let Some(folder) = &args.snapshots {
+        std::fs::create_dir_all(folder)
+            .map_err(|e| failed("make the folder", &e).in_file(folder).element("--snapshots"))?;
+    }
+    let options = Options { poll: args.poll, tev, snapshots: args.snapshots.clone(), once: args.once };
     let watch = Watch::new(args, options).map_err(|e| failed("watch files", &e))?;
     let server = if args.once { None } else { Some(page::open(&args.door, &watch, log)?) };
     let url = server.as_ref().map(|server| server.url());

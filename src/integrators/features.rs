@@ -37,19 +37,24 @@ pub struct Features {
 
 /// The features of all pixels of `window`, row by row.
 pub fn features(world: &World, window: Window) -> Vec<Features> {
+    features_of(world, window, SAMPLES)
+}
+
+/// The same with another number of eye samples a pixel, for who is in a hurry.
+pub fn features_of(world: &World, window: Window, samples: u32) -> Vec<Features> {
     (window.y0..window.y1)
         .into_par_iter()
-        .flat_map_iter(|y| (window.x0..window.x1).map(move |x| pixel(world, x, y)))
+        .flat_map_iter(|y| (window.x0..window.x1).map(move |x| pixel(world, x, y, samples)))
         .collect()
 }
 
-fn pixel(world: &World, x: u32, y: u32) -> Features {
+fn pixel(world: &World, x: u32, y: u32, samples: u32) -> Features {
     let corner = DVec2::new(x.into(), y.into());
     let mut found = at_centre(world, corner + 0.5);
     let index = u64::from(y) * u64::from(world.camera.width) + u64::from(x);
     let (mut albedo, mut normal, mut geometric, mut hits) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, 0.0);
     let sequence = Sequence::new(0, STREAM, index);
-    for sample in 0..SAMPLES {
+    for sample in 0..samples {
         let mut sobol = sequence.sample(sample.into());
         let raster = corner + DVec2::from_array(sobol.next_2d());
         let ray = world.camera.ray(raster, sobol.next_2d());
@@ -61,7 +66,7 @@ fn pixel(world: &World, x: u32, y: u32) -> Features {
         geometric += hit.ng * facing;
         hits += 1.0;
     }
-    let count = f64::from(SAMPLES);
+    let count = f64::from(samples);
     found.albedo = (albedo / count).as_vec3();
     found.normal = (normal / count).as_vec3();
     found.geometric_normal = (geometric / count).as_vec3();

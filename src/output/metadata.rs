@@ -49,6 +49,8 @@ pub struct Metadata {
     pub black: bool,
     /// Which part of how many a shard holds, as given to `--shard i/n`.
     pub shard: Option<(u32, u32)>,
+    /// What people should know of it.
+    pub comment: Option<String>,
     /// Errors of areas, of every side that is kept.
     pub block_variances: Vec<BlockVariances>,
 }
@@ -58,6 +60,7 @@ impl Metadata {
         let mut attributes = LayerAttributes {
             software_name: Some(text(SOFTWARE)),
             capture_date: self.captured.map(|time| text(&exr_date(time))),
+            comments: self.comment.as_deref().map(text),
             utc_offset: self.captured.map(|_| 0.0),
             world_to_camera: self.camera.map(|camera| flat(camera.world_to_camera)),
             world_to_normalized_device: self.camera.map(|camera| flat(camera.world_to_ndc)),

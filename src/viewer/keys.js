@@ -8,6 +8,7 @@ const KEYS = (act) => [
   ["0", "0", "exposure as it is", () => act.exposure(0)],
   ["t", "T", "next tone map", act.curve],
   ["l", "L", "false colour: stops from middle grey", act.falseColor],
+  ["v", "V", "next of what can be shown: the image, albedo, normals, depth …", act.layer],
   ["f", "F", "fit the image", act.fit],
   ["1", "1", "a pixel for a pixel", act.actual],
   ["w", "W", "wipe between before and now", act.wipe],

@@ -2,11 +2,13 @@
 
 import { Camera } from "./camera.js";
 import { addKeys } from "./keys.js";
+import { Layers } from "./layer.js";
 import { Link } from "./link.js";
 import { Panel } from "./panel.js";
 import { addPointer } from "./pointer.js";
 import { Screen } from "./screen.js";
-import { showProbe, showState } from "./status.js";
+import { showNotes, showProbe, showState } from "./status.js";
+import { showVariants } from "./variants.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -15,6 +17,7 @@ const link = new Link({ hear, tiles: (part) => screen.tiles(part), state: showLi
 const send = (request) => link.send(request);
 const camera = new Camera(send);
 const panel = new Panel(send);
+const layers = new Layers(screen);
 let state = { phase: "loading", size: [0, 0], snapshots: [] };
 let compared = null;
 
@@ -23,6 +26,8 @@ function hear(document) {
   else if (document.type === "scene") {
     camera.learn(document.camera);
     panel.learn(document);
+    showVariants(document.imports, send);
+    showNotes(document.notes);
   } else if (document.type === "probe") {
     showProbe(document);
     if (document.material && pointer.chosen(document.x, document.y)) panel.choose(document.material);
@@ -41,6 +46,7 @@ function learn(next) {
     screen.fit();
   }
   screen.draw();
+  layers.follow(state);
   document.body.dataset.region = screen.view.region ?? "";
   document.body.dataset.image = next.image;
   document.body.dataset.phase = next.phase;
@@ -51,6 +57,7 @@ function showLink(isOpen) {
   document.body.dataset.link = isOpen ? "open" : "closed";
   if (!isOpen) {
     screen.now.forget();
+    layers.forget();
     $("phase").textContent = "offline";
     $("phase").dataset.phase = "offline";
   }
@@ -85,6 +92,7 @@ async function compare(image) {
 
 async function setMode(mode) {
   const next = screen.view.mode === mode ? "now" : mode;
+  if (next !== "now") layers.choose("");
   if (next !== "now" && compared === null) {
     const last = state.snapshots.at(-1);
     if (!last) return;
@@ -128,6 +136,7 @@ const actions = {
   actual: () => screen.zoomAt($("canvas").clientWidth / 2, $("canvas").clientHeight / 2, 1 / screen.view.zoom / devicePixelRatio),
   wipe: () => setMode("wipe"),
   swap: () => setMode("before"),
+  layer: () => layers.next(),
   difference: () => setMode("difference"),
   save,
   exposure: (by) => setExposure(by === 0 ? 0 : screen.view.exposure + by),

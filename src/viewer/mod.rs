@@ -13,10 +13,12 @@ pub const ASSETS: &[Asset] = &[
     Asset { name: "main.js", kind: SCRIPT, text: include_str!("main.js") },
     Asset { name: "camera.js", kind: SCRIPT, text: include_str!("camera.js") },
     Asset { name: "keys.js", kind: SCRIPT, text: include_str!("keys.js") },
+    Asset { name: "layer.js", kind: SCRIPT, text: include_str!("layer.js") },
     Asset { name: "link.js", kind: SCRIPT, text: include_str!("link.js") },
     Asset { name: "panel.js", kind: SCRIPT, text: include_str!("panel.js") },
     Asset { name: "pointer.js", kind: SCRIPT, text: include_str!("pointer.js") },
     Asset { name: "screen.js", kind: SCRIPT, text: include_str!("screen.js") },
     Asset { name: "shader.js", kind: SCRIPT, text: include_str!("shader.js") },
     Asset { name: "status.js", kind: SCRIPT, text: include_str!("status.js") },
+    Asset { name: "variants.js", kind: SCRIPT, text: include_str!("variants.js") },
 ];

@@ -70,7 +70,7 @@ function fill(select, names) {
     select.dataset.names = JSON.stringify(names);
     if (names.includes(before)) select.value = before;
   }
-  select.disabled = names.length === 0;
+  select.closest("section").hidden = names.length === 0;
 }
 
 function row(key, textured) {

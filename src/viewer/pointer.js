@@ -10,6 +10,8 @@ const PAUSE = 80;
 export function addPointer({ screen, camera, send }) {
   const canvas = $("canvas"), view = screen.view;
   let tool = "look", drag = null, clicked = null, asked = 0;
+  // Where each finger is; two of them zoom and move.
+  const fingers = new Map();
 
   const at = (event) => {
     const box = canvas.getBoundingClientRect();
@@ -28,7 +30,31 @@ export function addPointer({ screen, camera, send }) {
     if (isChosen) clicked = `${px},${py}`;
     send({ do: "probe", x: px, y: py });
   };
+  // What lies between two fingers: its middle and how far they are apart.
+  const span = () => {
+    const [[ax, ay], [bx, by]] = [...fingers.values()];
+    return { middle: [(ax + bx) / 2, (ay + by) / 2], apart: Math.hypot(ax - bx, ay - by) || 1 };
+  };
+  const pinch = (event) => {
+    const before = span();
+    fingers.set(event.pointerId, at(event));
+    const { middle, apart } = span();
+    const [dx, dy] = [middle[0] - before.middle[0], middle[1] - before.middle[1]];
+    if (tool === "camera") {
+      camera.pan(dx / canvas.clientHeight, dy / canvas.clientHeight);
+      camera.dolly(before.apart / apart);
+      return;
+    }
+    view.center = [view.center[0] - dx / view.zoom, view.center[1] - dy / view.zoom];
+    screen.zoomAt(...middle, apart / before.apart);
+  };
   const begin = (event) => {
+    if (event.pointerType === "touch") fingers.set(event.pointerId, at(event));
+    if (fingers.size > 1) {
+      drag = null;
+      $("marquee").hidden = true;
+      return;
+    }
     const isCamera = tool === "camera" || event.altKey;
     const kind = tool === "region" && !event.altKey ? "region" : !isCamera ? "move"
       : event.button === 2 ? "dolly" : event.button === 1 || event.shiftKey ? "pan" : "orbit";
@@ -38,6 +64,7 @@ export function addPointer({ screen, camera, send }) {
     canvas.focus();
   };
   const move = (event) => {
+    if (fingers.size === 2 && fingers.has(event.pointerId)) return pinch(event);
     const [x, y] = at(event);
     if (!drag) {
       if (performance.now() - asked > PAUSE) {
@@ -60,6 +87,7 @@ export function addPointer({ screen, camera, send }) {
     else marquee(drag.start, [x, y]);
   };
   const end = (event) => {
+    fingers.delete(event.pointerId);
     if (!drag) return;
     const { kind, start, moved } = drag;
     drag = null;
@@ -77,7 +105,10 @@ export function addPointer({ screen, camera, send }) {
   canvas.addEventListener("pointerdown", begin);
   canvas.addEventListener("pointermove", move);
   canvas.addEventListener("pointerup", end);
-  canvas.addEventListener("pointercancel", () => (drag = null));
+  canvas.addEventListener("pointercancel", (event) => {
+    fingers.delete(event.pointerId);
+    drag = null;
+  });
   canvas.addEventListener("pointerleave", () => ($("probe").hidden = true));
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener("wheel", (event) => {

@@ -53,7 +53,7 @@ class Picture {
 
 export class Screen {
   // How it is shown. `size` is that of the full frame; `zoom` is pixels of the screen a pixel, `center` what is in the middle.
-  view = { exposure: 0, balance: 0, curve: "agx", mode: "now", wipe: 0.5, region: null, zoom: 1, center: [0, 0], size: [1, 1] };
+  view = { exposure: 0, balance: 0, curve: "agx", mode: "now", layer: false, wipe: 0.5, region: null, zoom: 1, center: [0, 0], size: [1, 1] };
   frames = 0;
   #gl;
   #program;
@@ -66,6 +66,7 @@ export class Screen {
     this.#gl = gl;
     this.now = new Picture(gl);
     this.before = new Picture(gl);
+    this.layer = new Picture(gl);
     this.#program = link(gl);
     const corners = gl.createBuffer();
     gl.bindBuffer(gl.ARRAY_BUFFER, corners);
@@ -125,8 +126,9 @@ export class Screen {
     if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
     gl.viewport(0, 0, ...size);
     const at = (name) => gl.getUniformLocation(this.#program, name);
-    const filter = view.zoom * scale >= 2 && this.now.width === view.size[0] ? gl.NEAREST : gl.LINEAR;
-    [this.now, this.before].forEach(({ texture }, unit) => {
+    const shown = view.layer ? this.layer : this.now;
+    const filter = view.zoom * scale >= 2 && shown.width === view.size[0] ? gl.NEAREST : gl.LINEAR;
+    [shown, this.before].forEach(({ texture }, unit) => {
       gl.activeTexture(gl.TEXTURE0 + unit);
       gl.bindTexture(gl.TEXTURE_2D, texture);
       gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, filter);
@@ -140,13 +142,15 @@ export class Screen {
     const warm = view.balance / 2;
     gl.uniform3fv(at("gain"), [warm, 0, -warm].map((stops) => 2 ** (view.exposure + stops)));
     gl.uniform1i(at("curve"), CURVES.indexOf(view.curve));
-    gl.uniform1i(at("mode"), this.before.width ? MODES.indexOf(view.mode) : 0);
+    gl.uniform1i(at("isCode"), view.layer);
+    gl.uniform1i(at("mode"), this.before.width && !view.layer ? MODES.indexOf(view.mode) : 0);
     gl.uniform1f(at("wipe"), view.wipe * size[0]);
     const [w, h] = view.size;
     const [x0, y0, x1, y1] = view.region ?? [0, 0, w, h];
     gl.uniform4f(at("region"), x0 / w, y0 / h, x1 / w, y1 / h);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     canvas.dataset.frames = this.frames;
+    canvas.dataset.zoom = view.zoom;
     canvas.dataset.width = this.now.width;
   }
 }

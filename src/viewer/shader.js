@@ -11,6 +11,7 @@ uniform vec2 origin, extent, canvas;   // of the image, and of all, in pixels of
 uniform vec3 gain;
 uniform int curve, mode;
 uniform float wipe;
+uniform bool isCode;                   // codes for the screen are in now, not light
 uniform vec4 region;                   // left, top, right, bottom, 0 to 1
 out vec4 color;
 
@@ -85,6 +86,7 @@ void main() {
   vec3 light = isBefore ? b : a;
   vec3 shown = display(light);
   if (mode == 3) shown = clamp(abs(display(a) - display(b)) * 4.0, 0.0, 1.0);
+  if (isCode) shown = light;
   if (any(isnan(light))) shown = vec3(1.0, 0.0, 1.0);
   bool isOutside = any(lessThan(uv, region.xy)) || any(greaterThan(uv, region.zw));
   color = vec4(isOutside ? shown * 0.55 : shown, 1.0);

@@ -16,10 +16,11 @@ export function showState(state) {
   document.title = `${name} – Ajar`;
   $("phase").textContent = state.phase;
   $("phase").dataset.phase = state.phase;
-  const noise = state.noise === null ? "" : `, noise ${(state.noise * 100).toFixed(1)} %`;
+  const percent = (share) => `${(share * 100).toFixed(share < 0.1 ? 1 : 0)} %`;
+  const noise = state.noise === null ? "noise not yet known" : `noise ${percent(state.noise)} (worst ${percent(state.worst_tile)})`;
   const left = state.seconds_left === null ? "" : `, about ${duration(state.seconds_left)} left`;
   const [width, height] = state.size;
-  $("numbers").textContent = state.image === 0 ? "" : `${width}×${height}, ${state.samples} samples a pixel${noise}, ${duration(state.seconds)}${left}`;
+  $("numbers").textContent = state.image === 0 ? "" : `${width}×${height}, ${state.samples} samples a pixel, ${noise}, ${duration(state.seconds)}${left}`;
   $("changed").textContent = state.shown_for.length ? `changed: ${state.shown_for.join(", ")}` : "";
   $("progress").value = state.phase === "done" ? 1 : state.done;
   const isRunning = state.phase === "rendering";
@@ -31,17 +32,26 @@ export function showState(state) {
 
 function showErrors(errors) {
   $("banner").hidden = errors.length === 0;
-  $("banner").replaceChildren(...errors.slice(0, 8).map(({ file, place, element, message, hint }) => {
-    const line = document.createElement("p");
-    const where = document.createElement("code");
-    where.textContent = [file, ...(place ?? [])].filter((it) => it !== null).join(":") + ": ";
-    line.append(where, [element, message].filter(Boolean).join(": "));
-    if (hint) {
-      const advice = Object.assign(document.createElement("span"), { className: "hint", textContent: ` – ${hint}` });
-      line.append(advice);
-    }
-    return line;
-  }));
+  $("banner").replaceChildren(...errors.slice(0, 8).map(lineOf));
+}
+
+// What was said of the scene that is shown, and is no reason not to show it.
+export function showNotes(notes) {
+  $("notes-section").hidden = notes.length === 0;
+  const warnings = notes.filter(({ severity }) => severity === "warning").length;
+  $("notes-title").textContent = warnings ? `Notes (${notes.length}, ${warnings} of them warnings)` : `Notes (${notes.length})`;
+  $("notes").replaceChildren(...notes.map(lineOf));
+}
+
+function lineOf({ severity, file, place, element, message, hint }) {
+  const line = Object.assign(document.createElement("p"), { className: severity });
+  const name = file?.split(/[\\/]/).pop();
+  const where = document.createElement("code");
+  where.textContent = [name, ...(place ?? [])].filter(Boolean).join(":") + ": ";
+  where.title = file ?? "";
+  line.append(where, [element, message].filter(Boolean).join(": "));
+  if (hint) line.append(Object.assign(document.createElement("span"), { className: "hint", textContent: ` – ${hint}` }));
+  return line;
 }
 
 function showEdits({ edits, saved }) {

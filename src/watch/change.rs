@@ -14,7 +14,7 @@ use super::{
     state::Label,
     worker::{Job, Worker},
 };
-use crate::session::Status;
+use crate::session::{Status, is_scene_file};
 
 impl Watch<'_> {
     /// Ends the render at work.
@@ -36,7 +36,9 @@ impl Watch<'_> {
         let desk = Desk {
             subject: self.subject,
             imports: &self.imports,
-            draft: self.draft.at(&self.layer),
+            draft: self.draft.at(&self.layer, self.subject.path()),
+            variants: if is_scene_file(self.subject.path()) { Vec::new() } else { self.draft.variants() },
+            wants_output: self.subject.wants_images() || self.archive.is_some(),
             before: self.opened.as_ref().map(|opened| (&*opened.world, &self.changed)),
         };
         let read = desk.read();
@@ -46,7 +48,7 @@ impl Watch<'_> {
                 self.watcher.watch(self.files.clone(), since);
                 self.imports.sweep();
                 view.say(&read.messages);
-                self.replace(opened);
+                self.replace(opened, &read.messages, view);
             }
             Err(errors) => {
                 // What was needed before may be needed again.
@@ -58,8 +60,10 @@ impl Watch<'_> {
     }
 
     /// Renders a scene in place of the one before.
-    fn replace(&mut self, mut opened: Opened) {
+    fn replace(&mut self, mut opened: Opened, messages: &[Diagnostic], view: &mut dyn View) {
         self.keep_snapshot();
+        self.keep_on_disk(view);
+        self.state.shown_for = self.state.changed.clone();
         self.changed.clear();
         self.sound_draft = self.draft.clone();
         self.state.errors.clear();
@@ -68,7 +72,8 @@ impl Watch<'_> {
         if let Some(region) = self.region {
             opened.plan.settings.window = region;
         }
-        self.about = describe::scene(&opened, edits::pivot(&opened)).to_string().into();
+        self.about = describe::scene(&opened, edits::pivot(&opened), messages).to_string().into();
+        self.views.show(self.state.image, &opened.world);
         self.opened = Some(opened);
         self.resting = None;
         self.is_endless = false;
@@ -78,7 +83,9 @@ impl Watch<'_> {
     /// Stays with the scene before.
     fn refuse(&mut self, errors: Vec<Diagnostic>, was_at_work: bool, view: &mut dyn View) {
         view.say(&errors);
-        self.state.errors = errors;
+        // Notes that came with them are no reason; where warnings are, there is nothing worse.
+        let worst = errors.iter().map(|error| error.severity).max();
+        self.state.errors = errors.into_iter().filter(|error| Some(error.severity) == worst).collect();
         if self.draft != self.sound_draft {
             // A page that asks for what cannot be has to take it back.
             self.draft = self.sound_draft.clone();
@@ -127,11 +134,10 @@ impl Watch<'_> {
     fn keep_snapshot(&mut self) {
         if self.state.rounds > 0 && self.opened.is_some() {
             let (image, samples) = (self.state.image, self.state.samples);
-            let label = Label { image, changed: std::mem::take(&mut self.state.shown_for), samples };
+            let label = Label { image, changed: self.state.shown_for.clone(), samples };
             self.snapshots.add(label, self.screen.frame());
             self.state.snapshots = self.snapshots.labels();
         }
-        self.state.shown_for = self.state.changed.clone();
     }
 
     /// Goes on, beyond what was asked for if that is reached.

@@ -1,7 +1,7 @@
 //! What can be changed of a scene, as pages are told.
 
 use ajar_render::World;
-use ajar_scene::{Camera, Input, LightKind, Material, Projection, Scene, Setting};
+use ajar_scene::{Camera, Diagnostic, Input, LightKind, Material, Projection, Scene, Setting, VariedImport};
 use glam::{DAffine3, DVec3, Vec3};
 use serde_json::{Value, json};
 
@@ -11,7 +11,7 @@ use super::opened::Opened;
 const MOST: usize = 500;
 
 /// Everything about a scene that stays as it is while it is rendered.
-pub(super) fn scene(opened: &Opened, pivot: DVec3) -> Value {
+pub(super) fn scene(opened: &Opened, pivot: DVec3, messages: &[Diagnostic]) -> Value {
     let scene = &opened.world.scene;
     let cameras: Vec<_> = scene.cameras.iter().map(|camera| &camera.name).collect();
     json!({
@@ -20,7 +20,22 @@ pub(super) fn scene(opened: &Opened, pivot: DVec3) -> Value {
         "cameras": cameras,
         "materials": materials(&opened.world),
         "lights": opened.lights,
+        "imports": imports(&opened.varied),
+        "notes": notes(messages),
     })
+}
+
+/// What was said about it, the worst first.
+fn notes(messages: &[Diagnostic]) -> Vec<&Diagnostic> {
+    let mut notes: Vec<_> = messages.iter().collect();
+    notes.sort_by_key(|message| std::cmp::Reverse(message.severity));
+    notes.truncate(MOST);
+    notes
+}
+
+fn imports(varied: &[VariedImport]) -> Vec<Value> {
+    let import = |it: &VariedImport| json!({ "name": it.name, "variants": &it.variants[..it.variants.len().min(MOST)] });
+    varied.iter().take(MOST).map(import).collect()
 }
 
 fn camera((camera, place): &(Camera, DAffine3), pivot: DVec3) -> Value {

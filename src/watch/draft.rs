@@ -38,6 +38,9 @@ pub(super) enum Kind {
     Node,
     Camera,
     Light,
+    /// Chosen by requests of their own.
+    #[serde(skip_deserializing)]
+    Import,
 }
 
 impl Kind {
@@ -47,6 +50,7 @@ impl Kind {
             Self::Node => "node",
             Self::Camera => "camera",
             Self::Light => "light",
+            Self::Import => "import",
         }
     }
 
@@ -60,10 +64,17 @@ impl Kind {
             Self::Material | Self::Node => {
                 Value::Table(named.into_iter().map(|(name, table)| (name, table.into())).collect())
             }
-            Self::Camera | Self::Light => Value::Array(named.into_iter().map(says_name).collect()),
+            Self::Camera | Self::Light | Self::Import => {
+                Value::Array(named.into_iter().map(says_name).collect())
+            }
         }
     }
 }
+
+/// What a layer says besides imports.
+const OVER_ASSETS: &[Kind] = &[Kind::Camera, Kind::Light, Kind::Material, Kind::Node];
+/// The key of an import's variants.
+const VARIANT: &str = "variant";
 
 /// Changes that are not saved.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -94,10 +105,27 @@ impl Draft {
         self.camera = Some(camera.into());
     }
 
+    /// Shows these variants of an import; what the file shows by itself where there are none.
+    pub fn show_variants(&mut self, import: impl Into<String>, variants: Vec<String>) {
+        self.table(Kind::Import, import).insert(VARIANT.into(), variants.into());
+    }
+
+    /// The variants that are shown of an asset which is not imported by a scene file.
+    pub fn variants(&self) -> Vec<String> {
+        let imports = self.tables.iter().filter(|((kind, _), _)| *kind == Kind::Import);
+        let named = imports.filter_map(|(_, table)| table.get(VARIANT)?.as_array());
+        named.flatten().filter_map(|name| name.as_str().map(str::to_owned)).collect()
+    }
+
     /// As a scene file.
     pub fn text(&self) -> String {
+        self.text_of(&[Kind::Import, Kind::Camera, Kind::Light, Kind::Material, Kind::Node])
+    }
+
+    /// Of these kinds.
+    fn text_of(&self, kinds: &[Kind]) -> String {
         let mut file = Table::new();
-        for kind in [Kind::Camera, Kind::Light, Kind::Material, Kind::Node] {
+        for kind in kinds.iter().copied() {
             let named = self.tables.iter().filter(|((it, _), _)| *it == kind);
             let named: Vec<_> = named.map(|((_, name), table)| (name.clone(), table.clone())).collect();
             if !named.is_empty() {
@@ -117,12 +145,13 @@ impl Draft {
     /// As a scene file beside the one at `scene`, over which it lies.
     fn layer(&self, scene: &Path) -> String {
         let name = Value::from(scene.file_name().unwrap_or_default().to_string_lossy().into_owned());
-        let below = if is_scene_file(scene) {
-            format!("extends = {name}")
-        } else {
-            format!("[[import]]\nfile = {name}")
-        };
-        format!("{below}\n\n{}", self.text())
+        if is_scene_file(scene) {
+            return format!("extends = {name}\n\n{}", self.text());
+        }
+        let variants = Value::from(self.variants());
+        let variant =
+            if self.variants().is_empty() { String::new() } else { format!("{VARIANT} = {variants}\n") };
+        format!("[[import]]\nfile = {name}\n{variant}\n{}", self.text_of(OVER_ASSETS))
     }
 
     /// Saves it at `path`, beside the `scene` over which it lies.
@@ -134,9 +163,11 @@ impl Draft {
         write_atomically(path, |file| file.write_all(text.as_bytes()))
     }
 
-    /// With the path that it would be saved at, if there is something to save.
-    pub fn at(&self, path: &Path) -> Option<(PathBuf, String)> {
-        (!self.is_empty()).then(|| (path.to_owned(), self.text()))
+    /// With the path that it would be saved at beside the `scene`, if there is something to save. Variants of an asset which
+    /// is no scene file are not in it.
+    pub fn at(&self, path: &Path, scene: &Path) -> Option<(PathBuf, String)> {
+        let text = || if is_scene_file(scene) { self.text() } else { self.text_of(OVER_ASSETS) };
+        (!self.is_empty()).then(|| (path.to_owned(), text()))
     }
 }
 
@@ -161,6 +192,23 @@ mod tests {
         assert_eq!(read["light"].as_array().unwrap().len(), 1);
         assert_eq!(read["light"][0]["name"].as_str(), Some("sun"));
         assert_eq!(read["render"]["camera"].as_str(), Some("top"));
+    }
+
+    #[test]
+    fn variants_are_those_of_an_import() {
+        let mut draft = Draft::default();
+        draft.show_variants("shoe", vec!["Red".into()]);
+        let read = |text: String| text.parse::<Table>().unwrap();
+        assert_eq!(read(draft.text())["import"][0]["name"].as_str(), Some("shoe"));
+        let over_scene = read(draft.layer(Path::new("a/scene.toml")));
+        assert_eq!(over_scene["import"][0]["variant"][0].as_str(), Some("Red"));
+        // An asset is imported once.
+        let over_asset = read(draft.layer(Path::new("a/shoe.glb")));
+        assert_eq!(over_asset["import"].as_array().unwrap().len(), 1);
+        assert_eq!(over_asset["import"][0]["file"].as_str(), Some("shoe.glb"));
+        assert_eq!(over_asset["import"][0]["variant"][0].as_str(), Some("Red"));
+        assert_eq!(draft.variants(), ["Red"]);
+        assert_eq!(draft.at(Path::new("look.toml"), Path::new("shoe.glb")).unwrap().1, "");
     }
 
     #[test]

@@ -35,6 +35,10 @@ impl Watch<'_> {
             Request::Probe { x, y } => self.probe(x, y, reply),
             Request::Camera(view) => self.edit("camera", |draft, opened| look_from(draft, opened, view)),
             Request::Through { camera } => self.edit("camera", |draft, _| draft.look_through(camera)),
+            Request::Variants { import, variants } => {
+                let what = if variants.is_empty() { "variant as it was".into() } else { variants.join(", ") };
+                self.edit(&what, |draft, _| draft.show_variants(import, variants));
+            }
             Request::Set(setting) => self.edit(&setting.label(), |draft, _| draft.set(setting.clone())),
             Request::Revert {} => self.edit("edits dropped", |draft, _| *draft = Draft::default()),
             Request::Save {} => self.save(),

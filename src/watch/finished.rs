@@ -8,7 +8,7 @@ use super::{
     opened::{Opened, Output},
 };
 use crate::{
-    image::{self, Run},
+    image::{self, Destination, Run},
     session::Rendered,
     shard::Shard,
 };
@@ -31,7 +31,8 @@ impl Watch<'_> {
             self.state.phase = Phase::Done;
             self.state.seconds_left = None;
             // Part of an image is for those who look at it.
-            let output = opened.output.as_ref().filter(|_| self.region.is_none());
+            let is_wanted = self.subject.wants_images() && self.region.is_none();
+            let output = opened.output.as_ref().filter(|_| is_wanted);
             match output.map(|output| write(opened, output, &rendered)).transpose() {
                 Ok(notes) => {
                     view.say(&notes.unwrap_or_default());
@@ -48,6 +49,17 @@ impl Watch<'_> {
 }
 
 fn write(opened: &Opened, output: &Output, rendered: &Rendered) -> Result<Vec<Diagnostic>, Diagnostic> {
+    write_as(&output.to, opened, output, rendered, None)
+}
+
+/// Writes an image of a scene, with what people should know of it.
+pub(super) fn write_as(
+    to: &Destination,
+    opened: &Opened,
+    output: &Output,
+    rendered: &Rendered,
+    comment: Option<&str>,
+) -> Result<Vec<Diagnostic>, Diagnostic> {
     let plan = &opened.plan;
     let run = Run {
         camera: &opened.camera,
@@ -58,9 +70,10 @@ fn write(opened: &Opened, output: &Output, rendered: &Rendered) -> Result<Vec<Di
         film: &rendered.film,
         shard: Shard::WHOLE,
         status: &rendered.status,
-        complete: true,
+        complete: rendered.reason.is_some(),
         report: &rendered.report,
         scene_hash: &output.hash,
+        comment,
     };
-    image::write(&run, &output.to).map_err(|e| Diagnostic::error(e.to_string()).because(Cause::System))
+    image::write(&run, to).map_err(|e| Diagnostic::error(e.to_string()).because(Cause::System))
 }

@@ -4,6 +4,7 @@
 //! `Event`. A change ends the render at once; the scene is read again, of which only what changed is work; a new render
 //! begins. If the scene cannot be read, the old render goes on.
 
+mod archive;
 mod change;
 mod describe;
 mod draft;
@@ -15,6 +16,7 @@ mod page;
 mod screen;
 mod snapshots;
 mod state;
+mod views;
 mod worker;
 
 pub use state::{Label, Phase, State};
@@ -43,12 +45,14 @@ use crate::{
     plan::Plan,
     session::{Reading, Rendered, Status},
 };
+use archive::Archive;
 use draft::Draft;
 use imports::Imports;
 use opened::{Opened, names};
 use page::{Pages, Request};
 use screen::Screen;
 use snapshots::Snapshots;
+use views::Views;
 use worker::Worker;
 
 /// How long the interrupt of a user may go unnoticed.
@@ -112,6 +116,8 @@ pub struct Options {
     pub poll: bool,
     /// Where to show images besides pages.
     pub tev: Option<Tev>,
+    /// The folder to keep images of before in.
+    pub snapshots: Option<PathBuf>,
     /// End with the first finished image, or if there is none to come.
     pub once: bool,
 }
@@ -136,6 +142,8 @@ enum Event {
     Round(u64, Status),
     /// The render of this number has ended.
     End(u64),
+    /// Something about files that were written.
+    Said(Diagnostic),
 }
 
 /// A scene that is watched.
@@ -149,6 +157,9 @@ pub struct Watch<'a> {
     stage: Stage,
     screen: Arc<Screen>,
     snapshots: Arc<Snapshots>,
+    views: Arc<Views>,
+    /// Where images of before are kept besides memory.
+    archive: Option<Archive>,
     imports: Imports,
     /// The last scene that could be read.
     opened: Option<Opened>,
@@ -191,15 +202,19 @@ impl<'a> Watch<'a> {
         let sender = events.0.clone();
         let watcher = Watcher::new(options.poll, move |files| drop(sender.send(Event::Files(files))))?;
         let stage = Stage::default();
+        let screen = Arc::new(Screen::new(stage.clone(), options.tev));
+        let archive = options.snapshots.map(|folder| Archive::start(folder, events.0.clone())).transpose()?;
         Ok(Self {
             subject,
             once: options.once,
             watcher,
             events,
             waiting: Arc::default(),
-            screen: Arc::new(Screen::new(stage.clone(), options.tev)),
+            views: Arc::new(Views::new(Arc::clone(&screen))),
+            screen,
             stage,
             snapshots: Arc::default(),
+            archive,
             imports: Imports::default(),
             opened: None,
             worker: None,
@@ -222,8 +237,13 @@ impl<'a> Watch<'a> {
 
     /// What pages see, and what answers them.
     pub fn for_pages(&self) -> (Stage, Arc<dyn Program>) {
-        let (events, snapshots) = (self.events.0.clone(), Arc::clone(&self.snapshots));
-        (self.stage.clone(), Arc::new(Pages { events, snapshots, waiting: Arc::clone(&self.waiting) }))
+        let pages = Pages {
+            events: self.events.0.clone(),
+            snapshots: Arc::clone(&self.snapshots),
+            views: Arc::clone(&self.views),
+            waiting: Arc::clone(&self.waiting),
+        };
+        (self.stage.clone(), Arc::new(pages))
     }
 
     /// Reads and renders again and again until `stop` is raised.
@@ -250,6 +270,10 @@ impl<'a> Watch<'a> {
             }
         };
         self.rest();
+        self.keep_on_disk(view);
+        if let Some(archive) = self.archive.take() {
+            view.say(&archive.end(&self.events.1));
+        }
         end
     }
 
@@ -280,6 +304,7 @@ impl<'a> Watch<'a> {
                 }
             }
             Event::End(number) if number == self.number && self.worker.is_some() => self.end_image(view),
+            Event::Said(message) => view.say(&[message]),
             Event::Round(..) | Event::End(_) => {}
         }
     }

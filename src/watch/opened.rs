@@ -11,7 +11,7 @@ use ajar_render::{
     World,
     world::{PrepareOptions, Previous, prepare_after},
 };
-use ajar_scene::{Camera, Cause, Diagnostic, Looked, SceneFile, Setting};
+use ajar_scene::{Camera, Cause, Diagnostic, Looked, SceneFile, Setting, VariedImport};
 use glam::DAffine3;
 
 use super::{Subject, describe, imports::Imports};
@@ -31,6 +31,8 @@ pub(super) struct Opened {
     pub output: Option<Output>,
     /// Every value that scene files said, and who.
     pub settings: Vec<Setting>,
+    /// The imports that have variants.
+    pub varied: Vec<VariedImport>,
     /// The lights that pages can change.
     pub lights: Vec<serde_json::Value>,
     /// Whether the camera is one that was added.
@@ -50,6 +52,10 @@ pub(super) struct Desk<'a> {
     pub imports: &'a Imports,
     /// Path and text of a scene file that lies over everything.
     pub draft: Option<(PathBuf, String)>,
+    /// Variants of the asset, where it is one.
+    pub variants: Vec<String>,
+    /// Whether something will be written of the scene.
+    pub wants_output: bool,
     /// The scene before, and the files that changed since.
     pub before: Option<(&'a World, &'a BTreeSet<PathBuf>)>,
 }
@@ -81,9 +87,10 @@ impl Desk<'_> {
         let path = subject.path();
         let import = |request: &ajar_scene::ImportRequest| self.imports.ask(request, &ajar_importers::import);
         let draft = self.draft.as_ref().map(|(path, text)| (path.as_path(), text.as_str()));
-        let reading = Reading { draft, looked: looked.clone(), import: &import };
+        let (variants, looked) = (self.variants.clone(), looked.clone());
+        let reading = Reading { draft, variants, looked: looked.clone(), import: &import };
         let mut file = subject.open(&reading)?;
-        let hash = subject.wants_images().then(|| file.scene.content_hash());
+        let hash = self.wants_output.then(|| file.scene.content_hash());
         let lights = describe::lights(&file.scene, &file.settings);
         let cameras = file.scene.cameras.len();
         subject.complete(&mut file);
@@ -95,13 +102,13 @@ impl Desk<'_> {
         let output = output.transpose().map_err(|d| vec![d])?;
         let id = session::choose_camera(&file.scene, subject.camera(&file)).map_err(|d| vec![d])?;
         let camera = (file.scene.cameras[id.0].clone(), id.1);
-        let SceneFile { scene, settings, .. } = file;
+        let SceneFile { scene, settings, varied, .. } = file;
         let options = PrepareOptions { camera: id, size: plan.size, texture_memory: subject.memory_limit() };
         let previous = self.before.map(|(world, changed)| Previous { world, changed });
         let prepared = prepare_after(scene, &options, previous);
         let (world, warnings) = prepared.map_err(|d| session::about(path, d))?;
         messages.extend(session::about(path, warnings));
-        Ok(Opened { world: Arc::new(world), camera, plan, output, settings, lights, is_framed })
+        Ok(Opened { world: Arc::new(world), camera, plan, output, settings, varied, lights, is_framed })
     }
 }
 

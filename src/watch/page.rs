@@ -12,7 +12,7 @@ use ajar_live::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::{Event, State, draft, snapshots::Snapshots};
+use super::{Event, State, draft, snapshots::Snapshots, views::Views};
 
 /// Requests that may wait; a page that sends more is not one of ours.
 const MOST_WAITING: usize = 1000;
@@ -35,6 +35,8 @@ pub(super) enum Request {
     Camera(View),
     /// Look through the camera of this name.
     Through { camera: String },
+    /// Show these variants of an import; none is what the file shows by itself.
+    Variants { import: String, variants: Vec<String> },
     /// Change a value.
     Set(draft::Setting),
     /// Drop all changes that pages made.
@@ -65,6 +67,7 @@ pub(super) struct Told<'a> {
 pub(super) struct Pages {
     pub events: Sender<Event>,
     pub snapshots: Arc<Snapshots>,
+    pub views: Arc<Views>,
     pub waiting: Arc<AtomicUsize>,
 }
 
@@ -78,6 +81,6 @@ impl Program for Pages {
     }
 
     fn image(&self, name: &str) -> Option<Arc<Frame>> {
-        self.snapshots.get(name.parse().ok()?)
+        name.parse().map_or_else(|_| self.views.get(name), |image| self.snapshots.get(image))
     }
 }

@@ -6,7 +6,7 @@ use ajar_integrators::Window;
 use ajar_live::{frame::Frame, server::Stage, tev::Tev};
 
 /// Pixels of linear RGB, rows from the top.
-type Pixels = Vec<[f32; 3]>;
+pub(super) type Pixels = Vec<[f32; 3]>;
 
 /// An image, or a part of it.
 pub(super) struct Shot {
@@ -65,6 +65,12 @@ impl Screen {
     /// What is shown, coarse images left out.
     pub fn frame(&self) -> Arc<Frame> {
         Arc::clone(&lock(&self.picture).frame)
+    }
+
+    /// The standard errors of what is shown, NaN where they are not known, with its size.
+    pub fn errors(&self) -> ([usize; 2], Pixels) {
+        let picture = lock(&self.picture);
+        (picture.size, picture.errors.clone())
     }
 
     pub fn pixel(&self, x: u32, y: u32) -> Option<Pixel> {

@@ -14,6 +14,7 @@ fn help_names_the_exit_codes_and_fits_the_screen() {
         "validate --help",
         "formats --help",
         "merge --help",
+        "watch --help",
         "render -h",
     ] {
         let run = bench.run(arguments).exits(0);

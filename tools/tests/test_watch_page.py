@@ -3,12 +3,13 @@
 import os
 import re
 import shutil
+import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from watching import SCENE, Watch, material, studio
+from watching import SCENE, Watch, material, studio, swatch
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -154,6 +155,34 @@ def test_a_broken_edit_shows_where_and_the_image_stays(bench: Bench) -> None:
     assert sum(bench.mean(MIDDLE)) > sum(before)
 
 
+def test_what_the_camera_sees_first_is_shown_and_follows(bench: Bench) -> None:
+    image = bench.mean(MIDDLE)
+    seen = {tuple(image)}
+    for name in ["albedo", "normal", "geometric_normal", "depth", "position", "material_id", "object_id", "variance"]:
+        bench.page.select_option("#layer", name)
+        bench.page.wait_for_function(f"() => (document.body.dataset.shown ?? '').startsWith('{name} ')")
+        seen.add(tuple(bench.mean(MIDDLE)))
+    # A box is flat, and it is alone: both normals are the same, and both numbers.
+    assert len(seen) == 7
+    bench.page.select_option("#layer", "albedo")
+    bench.page.wait_for_function("() => (document.body.dataset.shown ?? '').startsWith('albedo ')")
+    before = bench.mean(MIDDLE)
+    bench.changed(lambda: (bench.folder / "box.mtl").write_text(material("0.1 0.5 0.1")))
+    bench.page.wait_for_function(f"() => document.body.dataset.shown === 'albedo {bench.image()} 0'")
+    after = bench.mean(MIDDLE)
+    assert after[1] / after[0] > 1.5 * before[1] / before[0]
+    # Albedos are no light: exposure leaves them.
+    bench.page.keyboard.press("]")
+    assert bench.mean(MIDDLE) == after
+    bench.page.keyboard.press("0")
+    bench.page.focus("#canvas")
+    bench.page.select_option("#layer", "variance")
+    bench.page.focus("#canvas")
+    bench.page.keyboard.press("v")
+    assert bench.page.evaluate("document.getElementById('layer').value") == ""
+    bench.changed(lambda: (bench.folder / "box.mtl").write_text(material("0.7 0.05 0.05")))
+
+
 def test_images_of_before_are_compared(bench: Bench) -> None:
     left, right = [0.3, 0.4, 0.45, 0.6], [0.55, 0.4, 0.7, 0.6]
     now = [bench.mean(left), bench.mean(right)]
@@ -244,6 +273,67 @@ def test_the_camera_is_moved_with_the_pointer(bench: Bench) -> None:
     assert "[[camera]]" in bench.page.inner_text("#edits")
     bench.changed(lambda: bench.page.click("#revert"))
     assert bench.page.inner_text("#edits") == "None."
+
+
+def test_a_variant_is_chosen_and_saved(bench: Bench) -> None:
+    bench.changed(lambda: bench.scene.write_text(SCENE.replace("box.obj", swatch(bench.folder).name)))
+    before = bench.mean(MIDDLE)
+    assert bench.page.locator("#variants option").all_inner_texts() == ["as the file shows", "Red", "Green"]
+    bench.changed(lambda: bench.page.select_option("#variants select", "Green"))
+    after = bench.mean(MIDDLE)
+    assert after[1] / after[0] > 2 * before[1] / before[0]
+    assert 'variant = ["Green"]' in bench.page.inner_text("#edits")
+    bench.page.click("#save")
+    bench.page.wait_for_function("() => document.getElementById('saved').innerText.includes('look.toml')")
+    shown = [os.environ["AJAR_BIN"], "inspect", str(bench.folder / "look.toml")]
+    assert "Green" in subprocess.run(shown, check=True, capture_output=True, text=True).stdout
+    bench.changed(lambda: bench.page.click("#revert"))
+    assert bench.mean(MIDDLE) == before
+    bench.changed(lambda: bench.scene.write_text(SCENE))
+    assert bench.page.is_hidden("#variants-section")
+
+
+def test_notes_are_no_errors(bench: Bench) -> None:
+    # A colour that no surface can have is bounded, with a warning; then something that is wrong.
+    bench.changed(lambda: (bench.folder / "box.mtl").write_text(material("0.6 0.6 0.6") + "disp bumps.png\n"))
+    assert bench.page.is_hidden("#banner")
+    assert bench.page.is_visible("#notes-section")
+    bench.page.click("#notes-title")
+    assert "disp" in bench.page.inner_text("#notes")
+    bench.scene.write_text(SCENE.replace("spp = 8", "spp = 0"))
+    bench.page.wait_for_selector("#banner:not([hidden])")
+    assert bench.page.locator("#banner p").count() == 1
+    assert "disp" not in bench.page.inner_text("#banner")
+    (bench.folder / "box.mtl").write_text(material("0.6 0.6 0.6"))
+    bench.changed(lambda: bench.scene.write_text(SCENE))
+    assert bench.page.is_hidden("#banner")
+
+
+def test_a_tablet_has_all_of_it(bench: Bench) -> None:
+    context = bench.browser.new_context(viewport={"width": 768, "height": 1024}, has_touch=True)
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE)
+    page.goto(bench.url)
+    bench.done(1, page)
+    for name in ["run", "help-button", "layer", "exposure", "materials", "lights", "save"]:
+        page.locator(f"#{name}").scroll_into_view_if_needed()
+        assert page.locator(f"#{name}").is_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") == 768
+    box = page.locator("#canvas").bounding_box()
+    assert box["width"] == 768
+    assert box["height"] > 400
+    middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.touchscreen.tap(*middle)
+    page.wait_for_function("() => document.getElementById('probe').innerText.includes('clay')")
+    touch = context.new_cdp_session(page)
+    zoom = "Number(document.getElementById('canvas').dataset.zoom)"
+    before = page.evaluate(zoom)
+    for kind, apart in [("touchStart", 50), ("touchMove", 75), ("touchMove", 100), ("touchEnd", None)]:
+        fingers = [] if apart is None else [{"x": middle[0] + side * apart, "y": middle[1]} for side in (-1, 1)]
+        points = [{**finger, "id": i} for i, finger in enumerate(fingers)]
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    page.wait_for_function(f"() => {zoom} > 1.8 * {before}")
+    context.close()
 
 
 def test_several_pages_see_the_same_and_find_the_program_again(bench: Bench) -> None:

@@ -1,8 +1,10 @@
 """`ajar watch` at work, for tests: a studio of a few files, the program, and what it says."""
 
+import base64
 import json
 import os
 import signal
+import struct
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -60,6 +62,32 @@ def studio(folder: Path) -> Path:
     (folder / "box.mtl").write_text(material("0.6 0.6 0.6"))
     (folder / "scene.toml").write_text(SCENE)
     return folder / "scene.toml"
+
+
+def swatch(folder: Path) -> Path:
+    """Writes a glTF triangle in two variants before the camera of the studio; returns its file."""
+    corners = struct.pack("<9f", 2.55, -0.1, 0.9, 0.15, -0.1, 2.7, 1.35, 2.9, 1.8)
+    data = "data:application/octet-stream;base64," + base64.b64encode(corners).decode()
+    variants = "KHR_materials_variants"
+    mappings = [{"material": i, "variants": [i]} for i in range(2)]
+    colors = [[0.8, 0.05, 0.05, 1], [0.05, 0.8, 0.05, 1]]
+    primitive = {"attributes": {"POSITION": 0}, "material": 0, "extensions": {variants: {"mappings": mappings}}}
+    limits = {"min": [0, -1, 0], "max": [3, 3, 3]}
+    document = {
+        "asset": {"version": "2.0"},
+        "extensionsUsed": [variants],
+        "extensions": {variants: {"variants": [{"name": "Red"}, {"name": "Green"}]}},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "swatch", "mesh": 0}],
+        "meshes": [{"primitives": [primitive]}],
+        "materials": [{"doubleSided": True, "pbrMetallicRoughness": {"baseColorFactor": it}} for it in colors],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"} | limits],
+        "bufferViews": [{"buffer": 0, "byteLength": len(corners)}],
+        "buffers": [{"byteLength": len(corners), "uri": data}],
+    }
+    (folder / "swatch.gltf").write_text(json.dumps(document))
+    return folder / "swatch.gltf"
 
 
 class Watch:

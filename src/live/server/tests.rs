@@ -348,6 +348,20 @@ fn there_is_a_place_for_so_many_pages_and_it_is_given_again() {
 }
 
 #[test]
+fn a_hundred_connections_that_say_nothing_or_half_hold_nobody_up() {
+    let bench = Bench::new(4);
+    let connections: Vec<_> = (0..100).map(|_| bench.connect()).collect();
+    for mut connection in connections.iter().step_by(2) {
+        connection.write_all(b"GET /").unwrap();
+    }
+    let mut page = bench.open();
+    page.say("hello");
+    assert_eq!(page.hear(), Some("heard hello".into()));
+    assert_eq!(bench.status(&format!("/{TOKEN}/")), 200);
+    drop(connections);
+}
+
+#[test]
 fn a_page_that_does_not_read_holds_nobody_up() {
     let bench = Bench::new(4);
     let _deaf = bench.open();

@@ -55,6 +55,7 @@ fn picture() -> Picture {
             complete: true,
             black: true,
             shard: Some((2, 8)),
+            comment: Some("changed: box.mtl".into()),
             block_variances: vec![
                 BlockVariances { side: Some(8), values: vec![0.5, 0.25, 1.0] },
                 BlockVariances { side: None, values: vec![0.1, 0.2, 0.3] },
