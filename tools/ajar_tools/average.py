@@ -19,6 +19,8 @@ from ajar_tools.statistics import BlockStatistics, as_attributes, from_rounds
 
 # Fewer do not tell their spread.
 FEWEST = 2
+# R, G and B (docs/image-statistics.md).
+CHANNELS = 3
 
 
 def parser() -> argparse.ArgumentParser:
@@ -51,6 +53,8 @@ def average(passes: Sequence[str | Path], output: Path) -> None:
     if len(passes) < FEWEST:
         raise CannotCompareError("a single render does not tell its noise")
     first = read(passes[0])
+    if len(first.color_channels) != CHANNELS:
+        raise CannotCompareError(f"{first.path} has no R, G and B, whose noise is what statistics are of")
     rounds = [first.color]
     for path in passes[1:]:
         picture = read(path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 from ajar_tools.gates import exact, finite, flip, numbers, statistical, structure, variance
@@ -36,8 +37,9 @@ def compare_pictures(new: Picture, reference: Picture, settings: Settings) -> Ve
         verdict.gates.append(result)
         if result.gate == "exact" and result.status is Status.PASS:
             return verdict
-        if result.gate in ENDING and result.status is Status.FAIL:
-            return judge(verdict, settings)
+        if result.gate in ENDING and result.status is Status.FAIL and not goes_on(result.gate, verdict, settings):
+            # What ends the comparison cannot be excused: nothing else was looked at.
+            return judge(verdict, replace(settings, excused=()))
     verdict.flip = flip.flip_map(new, reference, settings)
     verdict.gates += [
         statistical.check(new, reference, settings),
@@ -46,6 +48,14 @@ def compare_pictures(new: Picture, reference: Picture, settings: Settings) -> Ve
         numbers.check(new, reference, settings),
     ]
     return judge(verdict, settings)
+
+
+def goes_on(gate: str, verdict: Verdict, settings: Settings) -> bool:
+    """Whether other gates can judge though one failed: its failure is excused, and pixels lie over each other."""
+    assert verdict.pictures
+    new, reference = verdict.pictures
+    excused = gate in {entry.gate for entry in settings.excused}
+    return excused and new.data_window == reference.data_window and new.color.shape == reference.color.shape
 
 
 def judge(verdict: Verdict, settings: Settings) -> Verdict:

@@ -60,6 +60,8 @@ def exposures_for(brightest: float, median: float) -> list[float]:
 def tone_mapped(x: np.ndarray) -> np.ndarray:
     """Display-linear values in [0, 1]."""
     a, b, c, d, e = (np.float32(k) for k in ACES)
+    # White long before; the square is still a float.
+    x = np.minimum(x, np.float32(1e6))
     return np.clip((a * x * x + b * x) / (c * x * x + d * x + e), 0, 1)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, Any
@@ -95,19 +96,30 @@ class Verdict:
         return "\n".join(lines)
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """For JSON, which has no infinity: such numbers are texts."""
         gates = [
             {"gate": g.gate, "status": g.status.value.lower(), "message": g.message, "numbers": g.numbers}
             for g in self.gates
         ]
-        return {
-            "outcome": self.outcome.name.lower(),
-            "exit_code": self.outcome.value,
-            "headline": self.headline(),
-            "reason": self.reason,
-            "new": self.new,
-            "reference": self.reference,
-            "problem": self.problem,
-            "gates": gates,
-            "exceptions": self.exceptions,
-        }
+        return printable(
+            {
+                "outcome": self.outcome.name.lower(),
+                "exit_code": self.outcome.value,
+                "headline": self.headline(),
+                "reason": self.reason,
+                "new": self.new,
+                "reference": self.reference,
+                "problem": self.problem,
+                "gates": gates,
+                "exceptions": self.exceptions,
+            }
+        )
+
+
+def printable(value: Any) -> Any:
+    """JSON has no infinity: such numbers become texts."""
+    if isinstance(value, dict):
+        return {key: printable(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [printable(item) for item in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value

@@ -66,5 +66,14 @@ def test_what_cannot_be_averaged_is_refused(tmp_path: Path, capsys: pytest.Captu
     ):
         assert main([*images, "-o", output]) == 2
         assert says in capsys.readouterr().err
+    grey = [str(tmp_path / f"grey{i}.exr") for i in range(2)]
+    for path, value in zip(grey, (1.0, 2.0), strict=True):
+        spec = oiio.ImageSpec(8, 8, 1, oiio.FLOAT)
+        spec.channelnames = ("Y",)
+        image = oiio.ImageBuf(spec)
+        image.set_pixels(spec.roi, np.full((8, 8, 1), value, np.float32))
+        assert image.write(path)
+    assert main([*grey, "-o", output]) == 2
+    assert "no R, G and B" in capsys.readouterr().err
     assert main([first, second, "-o", str(tmp_path / "no/folder/out.exr")]) == 2
     assert "cannot be written" in capsys.readouterr().err

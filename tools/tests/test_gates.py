@@ -1,5 +1,8 @@
 """Mutants must fail, at the gate that is there for them; twins must pass. All on images whose noise is known."""
 
+import datetime
+import json
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +13,7 @@ import pytest
 from ajar_tools import Outcome, Settings, Verdict, compare, read
 from ajar_tools.comparison import compare_pictures
 from ajar_tools.gates import statistical
+from ajar_tools.settings import ExcusedGate
 from ajar_tools.verdict import Status
 from synthetic import File, Recipe, file
 
@@ -213,3 +217,46 @@ def test_a_short_render_that_missed_light_is_judged_by_the_noise_of_the_long_one
     assert statistical.check(new, right, Settings()).status is Status.PASS
     new.attributes["ajar:integrator"] = "bdpt"
     assert statistical.check(new, right, Settings()).status is Status.FAIL
+
+
+def excusing(gate: str) -> Settings:
+    return Settings(excused=(ExcusedGate(gate, "renamed", datetime.date(2999, 1, 1)),))
+
+
+def test_an_excused_structure_leaves_the_other_gates_to_judge(reference: Path, tmp_path: Path) -> None:
+    renamed = file(seed=7)
+    renamed.channels = ("R", "G", "B", "Z")
+    same = compare(renamed.write(tmp_path / "same.exr"), reference, excusing("structure"))
+    assert same.outcome is Outcome.PASS
+    assert same.exceptions
+    renamed.pixels[..., :3] = 0
+    black = compare(renamed.write(tmp_path / "black.exr"), reference, excusing("structure"))
+    assert black.outcome is Outcome.FAIL
+
+
+def test_another_window_cannot_be_excused(reference: Path, tmp_path: Path) -> None:
+    small = file(seed=7, width=64).write(tmp_path / "new.exr")
+    assert compare(small, reference, excusing("structure")).outcome is not Outcome.PASS
+
+
+def test_a_pixel_whose_square_is_no_float_fails(reference: Path, tmp_path: Path) -> None:
+    mutant = file(seed=7)
+    mutant.pixels[20, 30, 1] = 1e30
+    assert compare(mutant.write(tmp_path / "new.exr"), reference).outcome is Outcome.FAIL
+
+
+def test_verdicts_are_json_without_infinity(reference: Path, tmp_path: Path) -> None:
+    """Where only coverage differs the colours' PSNR is infinite."""
+    mutant = file(seed=1000, rounds=64)
+    mutant.pixels[..., 3] = 0.5
+    verdict = compare(mutant.write(tmp_path / "new.exr"), reference)
+    json.dumps(verdict.as_dict(), allow_nan=False)
+    assert any(gate.numbers.get("psnr") == math.inf for gate in verdict.gates)
+
+
+def test_negative_lobes_of_other_renderers_are_no_failure(reference: Path, tmp_path: Path) -> None:
+    mutant = file(seed=7)
+    mutant.pixels[20, 30, 1] = -1e-4
+    new = mutant.write(tmp_path / "new.exr")
+    assert compare(new, reference).outcome is Outcome.FAIL
+    assert gates(compare(new, reference, Settings(other_renderer=True)))["finite"] is Status.PASS

@@ -83,6 +83,16 @@ def test_colours_of_whole_numbers(good: Path, tmp_path: Path) -> None:
     assert "whole numbers" in refused(write(tmp_path / "a.exr", oiio.ImageSpec(96, 72, 4, oiio.UINT)), good)
 
 
+@pytest.mark.parametrize("name", ["samplesPerPixel", "ajar:mutationsPerSample"])
+def test_attributes_that_should_be_numbers(name: str, good: Path, tmp_path: Path) -> None:
+    image = oiio.ImageBuf(str(good))
+    image.specmod().attribute(name, "many")
+    path = tmp_path / "a.exr"
+    assert image.write(str(path)), image.geterror()
+    other = file(seed=2).write(tmp_path / "other.exr")
+    assert f"{name} is no number" in refused(path, other)
+
+
 def test_a_folder_that_cannot_be_written(good: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "ajar_tools", "compare", good, good, "--html", tmp_path / "no/folder/report.html"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ajar_tools.picture import Picture
+from ajar_tools.picture import CannotCompareError, Picture
 from ajar_tools.settings import Settings
 from ajar_tools.statistics import BlockStatistics
 
@@ -38,7 +38,7 @@ def incomparable(new: Picture, reference: Picture) -> str:
     if reason := other_rounds(new, reference):
         return reason
     # `ajar` finds out by itself how many pay, by the seed.
-    mutations = [float(picture.attributes.get("ajar:mutationsPerSample", 0)) for picture in (new, reference)]
+    mutations = [number(picture, "ajar:mutationsPerSample") for picture in (new, reference)]
     if not math.isclose(*mutations, rel_tol=SAME_PLAN):
         return f"{mutations[0]:.3g} and {mutations[1]:.3g} mutations a sample have different noise"
     return ""
@@ -46,4 +46,16 @@ def incomparable(new: Picture, reference: Picture) -> str:
 
 def samples_per_round(picture: Picture) -> float:
     """Mean samples a pixel in a round."""
-    return float(picture.attributes.get("samplesPerPixel", 0)) / float(picture.attributes["ajar:rounds"])
+    return number(picture, "samplesPerPixel") / number(picture, "ajar:rounds")
+
+
+def number(picture: Picture, name: str) -> float:
+    """An attribute that is a number; 0 if it is not there.
+
+    Raises:
+        CannotCompareError: it is something else.
+    """
+    value = picture.attributes.get(name, 0)
+    if isinstance(value, (int, float)):
+        return float(value)
+    raise CannotCompareError(f"{picture.path}: {name} is no number")

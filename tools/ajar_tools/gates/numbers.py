@@ -45,7 +45,8 @@ def measures(a: np.ndarray, b: np.ndarray, settings: Settings) -> dict[str, floa
     """Mean, root mean square and largest error, PSNR, and percentages of pixels beyond thresholds."""
     error = np.abs(a - b)
     worst = over_channels(np.maximum, error)
-    mean_square = float(np.square(error).mean(dtype=np.float64))
+    # In doubles: the square of a large float is none any more.
+    mean_square = float(np.square(error, dtype=np.float64).mean())
     peak = float(b.max())
     psnr = math.inf if mean_square == 0 else 10 * math.log10(max(peak * peak, 1e-300) / mean_square)
     numbers = {

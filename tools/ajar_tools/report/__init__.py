@@ -18,7 +18,7 @@ from ajar_tools.picture import Picture
 from ajar_tools.report.encode import data_uri, shared_exponent
 from ajar_tools.report.strip import strip
 from ajar_tools.settings import Settings
-from ajar_tools.verdict import Verdict
+from ajar_tools.verdict import Verdict, printable
 
 # Larger images are averaged for the page, which says so.
 MOST_PIXELS = 2_100_000
@@ -75,15 +75,6 @@ def resource(name: str) -> str:
     data = pkgutil.get_data(__name__, name)
     assert data is not None
     return data.decode("utf-8")
-
-
-def printable(value: Any) -> Any:
-    """JSON has no infinity: such numbers become texts."""
-    if isinstance(value, dict):
-        return {key: printable(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [printable(item) for item in value]
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def images(verdict: Verdict, settings: Settings) -> dict[str, Any]:
