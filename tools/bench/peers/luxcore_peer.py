@@ -5,6 +5,7 @@ of JSON says how many CPU seconds it took. One thread.
 """
 
 import json
+import os
 import sys
 import time
 from pathlib import Path
@@ -146,6 +147,9 @@ def main():
         np.save(f"{prefix}-{limit:g}.npy", pixels.reshape(camera["height"], camera["width"], 3)[::-1])
         print(json.dumps({"seconds": limit, "cpu": time.process_time() - began}), flush=True)
     session.Stop()
+    # The library crashes when Python takes it down.
+    sys.stdout.flush()
+    os._exit(0)
 
 
 if __name__ == "__main__":
