@@ -19,7 +19,6 @@ const TOP: &[&str] = &[
     "clippy.toml",
     "docs",
     "importers",
-    "rustfmt.toml",
     "scenes",
     "src",
     "tests",

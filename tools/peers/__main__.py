@@ -1,6 +1,6 @@
 """Compares glTF assets with Blender's importer and Cycles: python tools/peers --ajar AJAR --bpy PYTHON ASSET.glb…
 
-Both get one camera, a uniform sky and a sun. Prints a row per asset for docs/peers.md: mean colours, their ratio, FLIP.
+Both get one camera, a uniform sky and a sun. Prints a row per asset: mean colours, their ratio, FLIP.
 """
 
 import argparse
