@@ -21,6 +21,8 @@ use studio::studio;
 
 /// How long something that must come may take on a machine that is very busy.
 const PATIENCE: Duration = Duration::from_secs(180);
+/// Files written so shortly before they are opened count as changed, for clocks of file systems are coarse.
+const CLOCK: Duration = Duration::from_millis(30);
 
 /// A program that watches, and what it says.
 struct Watch {
@@ -35,6 +37,7 @@ impl Watch {
 
     /// With these environment variables.
     fn start_with(bench: &Bench, arguments: &str, variables: &[(&str, &str)]) -> Self {
+        thread::sleep(CLOCK);
         let mut command = bench.command(&format!("watch {arguments} --log-format json --port 0 -v"));
         let mut child = command.envs(variables.iter().copied()).spawn().unwrap();
         let lines = BufReader::new(child.stderr.take().unwrap()).lines();

@@ -1,6 +1,9 @@
 //! Images of before as files.
 
-use std::fs;
+use std::{
+    cell::{Cell, RefCell},
+    fs,
+};
 
 use exr::prelude::MetaData;
 
@@ -18,12 +21,20 @@ fn each_change_leaves_an_image_and_so_does_the_end() {
     let bench = studio();
     bench.write("kept/0041-of-last-week.exr", "");
     let mut watch = Watch::start(&bench, "studio/scene.toml --float --snapshots kept");
-    watch.wait_for(|it| it["phase"] == "done");
+    let first = watch.wait_for(|it| it["phase"] == "done")["image"].as_u64();
     bench.run("render studio/scene.toml -o first.exr --float").exits(0);
     bench.write("studio/box.mtl", "newmtl clay\nKd 0.1 0.2 0.3\n");
-    let kept = watch.wait_for(|it| it["message"] == "kept");
-    assert!(kept["file"].as_str().unwrap().ends_with("0042-first-image.exr"), "{kept}");
-    watch.wait_for(|it| it["phase"] == "done");
+    // The old image is written while the new one is rendered: either may be first.
+    let (kept, done) = (RefCell::new(None), Cell::new(false));
+    watch.wait_for(|it| {
+        if it["message"] == "kept" {
+            kept.replace(it["file"].as_str().map(str::to_owned));
+        }
+        done.set(done.get() || it["phase"] == "done" && it["image"].as_u64() > first);
+        done.get() && kept.borrow().is_some()
+    });
+    let kept = kept.into_inner().unwrap();
+    assert!(kept.ends_with("0042-first-image.exr"), "{kept}");
     bench.run("render studio/scene.toml -o second.exr --float").exits(0);
     assert!(watch.end().iter().any(|it| it["message"] == "kept"));
     for (kept, rendered, said) in [
