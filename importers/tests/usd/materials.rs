@@ -291,3 +291,26 @@ def Sphere "Lost" (prepend apiSchemas = ["MaterialBindingAPI"]) { rel material:b
     let red = |m: &&Material| (m.base_color.value - Vec3::new(0.5, 0.25, 0.125)).length() < 1e-6;
     assert_eq!(imported.scene.materials.iter().filter(red).count(), 3, "of the prototype, A and B");
 }
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_is_a_link_brings_materialx_files() {
+    if !can_run() {
+        return;
+    }
+    let paint = r#"<?xml version="1.0"?><materialx version="1.38">
+        <open_pbr_surface name="S" type="surfaceshader"/><surfacematerial name="Red" type="material">
+        <input name="surfaceshader" type="surfaceshader" nodename="S"/></surfacematerial></materialx>"#;
+    let prims = r#"
+def "Paint" (references = @paint.mtlx@</MaterialX/Materials>) {}
+def Sphere "Ball" (prepend apiSchemas = ["MaterialBindingAPI"]) { rel material:binding = </Paint/Red> }
+"#;
+    let mut stage = Stage::new(prims).with("paint.mtlx", paint);
+    let elsewhere = tempfile::tempdir().unwrap();
+    let link = elsewhere.path().join("link");
+    std::os::unix::fs::symlink(stage.folder.path(), &link).unwrap();
+    stage.request = ajar_scene::ImportRequest::new(link.join("main.usda"));
+    let imported = stage.scene();
+    assert_eq!(warnings(&imported), [""; 0]);
+    assert_eq!(imported.scene.materials.len(), 1);
+}

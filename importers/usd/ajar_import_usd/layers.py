@@ -40,7 +40,7 @@ class Jail:
 
 
 def check(file: Path, jail: Jail, memory_limit: int, report: Report) -> list[Any]:
-    """Follows all layers from `file`, those of variants and payloads too, and returns them.
+    """Follows all layers from `file`, an absolute path, those of variants and payloads too, and returns them.
 
     Raises a failure where one lies outside the jail, is a package that cannot be trusted, or where references multiply
     beyond memory.
@@ -52,7 +52,7 @@ def check(file: Path, jail: Jail, memory_limit: int, report: Report) -> list[Any
     if size > memory_limit:
         raise StageError(f"{size} bytes are more than the memory limit", cause="resource")
     visited = Visited(jail, memory_limit // PRIM_SIZE, report)
-    visited.layer(str(file.resolve()), None)
+    visited.layer(str(file), None)
     visited.count()
     return [layer for layer in visited.layers.values() if layer]
 

@@ -38,13 +38,15 @@ def convert(args: argparse.Namespace, report: Report) -> Document:
     from . import layers, mtlx, stage, walk
     from .document import Document
 
-    jail = layers.Jail(args.file, args.allow)
+    # As usd-core names layers, links kept: what is looked at before must be what the stage is composed of.
+    file = Path(os.path.abspath(args.file))
+    jail = layers.Jail(file, args.allow)
     with report.listening():
-        found = layers.check(args.file, jail, args.memory_limit, report)
+        found = layers.check(file, jail, args.memory_limit, report)
         # Held until the stage is read.
         held = [*found, *mtlx.resolve(found, report)]
         moment = stage.Moment(args.frame, args.seconds, args.fps)
-        opened = stage.open_stage(args.file, args.variant, moment, report)
+        opened = stage.open_stage(file, args.variant, moment, report)
         document = Document(args.memory_limit)
         document.variants = stage.variant_sets(opened.stage)
         walk.Walk(opened, document, jail, report).run()
