@@ -69,10 +69,23 @@ impl Bench {
         self.0.path().join(name)
     }
 
-    pub fn write(&self, name: &str, text: &str) {
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
         let path = self.path(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, text).unwrap();
+        fs::write(path, bytes).unwrap();
+    }
+
+    /// `leaf.gltf` as the only chunk of a GLB.
+    pub fn glb(&self) -> Vec<u8> {
+        let json = fs::read(self.path("leaf.gltf")).unwrap();
+        let length = json.len().next_multiple_of(4);
+        let mut glb = b"glTF\x02\0\0\0".to_vec();
+        glb.extend((length as u32 + 20).to_le_bytes());
+        glb.extend((length as u32).to_le_bytes());
+        glb.extend(b"JSON");
+        glb.extend(&json);
+        glb.resize(length + 20, b' ');
+        glb
     }
 
     pub fn has(&self, name: &str) -> bool {

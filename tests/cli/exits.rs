@@ -68,7 +68,7 @@ fn mistakes_in_a_scene_file_have_line_column_and_advice() {
         ("spp = 4", "integrator = \"photon\"", ["photon", "bdpt"]),
     ] {
         assert!(SCENE.contains(good), "{good}");
-        bench.write("kitchen/scene.toml", &SCENE.replacen(good, bad, 1));
+        bench.write("kitchen/scene.toml", SCENE.replacen(good, bad, 1));
         let code = if bad.contains("photon") { 2 } else { 3 };
         bench.run("render kitchen/scene.toml").exits(code).says(&says);
     }

@@ -12,7 +12,7 @@ const SCENE: &str = r#"{"ajar": 1, "roots": [0], "nodes": [{"name": "leaf", "mes
 fn bench(probe: &str, import: &str) -> Bench {
     let bench = Bench::new();
     bench.write("a.toy", "toy");
-    bench.write("bin/ajar-import-toy", &format!("#!/bin/sh\n{probe}\n{import}\n"));
+    bench.write("bin/ajar-import-toy", format!("#!/bin/sh\n{probe}\n{import}\n"));
     fs::set_permissions(bench.path("bin/ajar-import-toy"), fs::Permissions::from_mode(0o755)).unwrap();
     bench
 }
@@ -59,15 +59,7 @@ fn the_users_settings_name_programs_too() {
 #[test]
 fn a_plug_in_may_answer_with_a_glb() {
     let bench = importing("cat leaf.glb");
-    let json = fs::read(bench.path("leaf.gltf")).unwrap();
-    let length = json.len().next_multiple_of(4);
-    let mut glb = b"glTF\x02\0\0\0".to_vec();
-    glb.extend((length as u32 + 20).to_le_bytes());
-    glb.extend((length as u32).to_le_bytes());
-    glb.extend(b"JSON");
-    glb.extend(&json);
-    glb.resize(length + 20, b' ');
-    fs::write(bench.path("leaf.glb"), glb).unwrap();
+    bench.write("leaf.glb", bench.glb());
     run(&bench, "inspect a.toy").exits(0).prints(&["wedge"]);
 }
 
@@ -177,7 +169,7 @@ fn the_example_reads_stl() {
     let text = corners.map(|[x, y, z]| format!("vertex {x} {y} {z}\n")).concat();
     bench.write(
         "text.stl",
-        &format!("solid\nfacet normal 0 0 0\nouter loop\n{text}endloop\nendfacet\nendsolid\n"),
+        format!("solid\nfacet normal 0 0 0\nouter loop\n{text}endloop\nendfacet\nendsolid\n"),
     );
     let mut binary = vec![0; 80];
     binary.extend(1_u32.to_le_bytes());

@@ -68,7 +68,7 @@ fn a_second_interrupt_ends_at_once() {
     let bench = Bench::new();
     let folder = vec!["x".repeat(200); 6].join("/");
     let unknown: String = (0..100).map(|i| format!("unknown{i}\n")).collect();
-    bench.write(&format!("{folder}/many.obj"), &format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n{unknown}"));
+    bench.write(&format!("{folder}/many.obj"), format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n{unknown}"));
     let mut child = bench.command(&format!("render {folder}/many.obj -o out.exr")).spawn().unwrap();
     let mut messages = BufReader::new(child.stderr.take().unwrap()).lines();
     // The first message says that signals are listened to.

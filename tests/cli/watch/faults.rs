@@ -13,7 +13,7 @@ fn a_broken_save_is_told_with_its_place_and_the_next_one_heals() {
     let bench = studio();
     let mut watch = Watch::start(&bench, "studio/scene.toml -o out.exr --float");
     watch.wait_for_image();
-    bench.write("studio/scene.toml", &SCENE.replace("spp = 4", "spp = = 4"));
+    bench.write("studio/scene.toml", SCENE.replace("spp = 4", "spp = = 4"));
     let error = watch.wait_for_error();
     assert!(
         error["file"].as_str().unwrap().ends_with("scene.toml") && error["place"][0].as_u64() > Some(15),
@@ -24,7 +24,7 @@ fn a_broken_save_is_told_with_its_place_and_the_next_one_heals() {
     // A texture that changes while the scene is broken is not forgotten.
     fs::write(bench.path("studio/wood.ppm.png"), picture(99)).unwrap();
     thread::sleep(Duration::from_millis(300));
-    bench.write("studio/scene.toml", &light(7));
+    bench.write("studio/scene.toml", light(7));
     watch.wait_for_image();
     is_what_render_makes(&bench, "out.exr", "studio/scene.toml");
 }
@@ -71,15 +71,8 @@ fn an_asset_that_is_half_written_does_not_take_the_image_away() {
 #[test]
 fn a_glb_that_is_half_written_does_not_take_the_image_away() {
     let bench = Bench::new();
-    let json = fs::read(bench.path("leaf.gltf")).unwrap();
-    let length = json.len().next_multiple_of(4);
-    let mut glb = b"glTF\x02\0\0\0".to_vec();
-    glb.extend((length as u32 + 20).to_le_bytes());
-    glb.extend((length as u32).to_le_bytes());
-    glb.extend(b"JSON");
-    glb.extend(&json);
-    glb.resize(length + 20, b' ');
-    fs::write(bench.path("leaf.glb"), &glb).unwrap();
+    let glb = bench.glb();
+    bench.write("leaf.glb", &glb);
     let mut watch = Watch::start(&bench, "leaf.glb -o out.exr --float --size 24x16 --spp 4");
     watch.wait_for_image();
     let good = fs::read(bench.path("out.exr")).unwrap();
@@ -122,7 +115,7 @@ fn a_texture_that_is_deleted_does_not_take_the_image_away() {
     let bench = studio();
     bench.write(
         "studio/scene.toml",
-        &format!("{SCENE}\n[material.clay]\nbase_color_texture = \"wood.ppm.png\"\n"),
+        format!("{SCENE}\n[material.clay]\nbase_color_texture = \"wood.ppm.png\"\n"),
     );
     let mut watch = Watch::start(&bench, "studio/scene.toml -o out.exr --float");
     watch.wait_for_image();

@@ -55,7 +55,7 @@ pub(super) fn studio_of_all_formats() -> (Bench, Vec<Variant>) {
         println!("skipped: USD layers, for AJAR_USD_PYTHON is not set");
     } else {
         bench.write("studio/stage.usda", STAGE);
-        bench.write(USD.0, &lid(0));
+        bench.write(USD.0, lid(0));
         files[0].1 = |n| format!("[[import]]\nfile = \"stage.usda\"\n{}", light(n)).into_bytes();
         fs::write(bench.path(files[0].0), files[0].1(0)).unwrap();
         files.push(USD);
