@@ -201,12 +201,8 @@ impl State {
         if !self.pending.is_still() {
             return None;
         }
-        // A folder may have come between looking for it and watching the one above.
-        let is_missing = |path: &PathBuf| self.files.contains_key(path) && !path.exists();
-        if self.pending.paths().any(is_missing)
-            && self.folders.watch(&self.paths())
-            && self.pending.wait_longer()
-        {
+        // A folder may have come between looking for it and watching the one above, and what is in it changed since.
+        if self.folders.watch(&self.paths()) && self.pending.wait_longer() {
             return None;
         }
         let found: BTreeMap<_, _> = self
