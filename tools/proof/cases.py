@@ -32,8 +32,8 @@ Each folder is a [case](../../docs/guard-images.md): a scene of `scenes/` by one
 samples. On the machine and with the build that made them, renders equal the references to the last bit, and anything
 that changes a bit is seen by `pytest tests/images --ajar-exact`. Elsewhere they are compared by statistics, and what is
 too small for these passes. Albedo, normals and depth are compared everywhere, nearly exactly
-([compare.md](../../docs/compare.md)): they find what moved, and colours of materials. `door-ajar` is rendered without its
-door, and `caustic-glass` with a larger lamp of the same power: as they are, they take too many samples for a test.
+([compare.md](../../docs/compare.md)): they find what moved, and colours of materials. `door-ajar` is rendered without
+its door, and `caustic-glass` with a larger lamp of the same power: as they are, they take too many samples for a test.
 
 ## Smallest change of light that is found
 

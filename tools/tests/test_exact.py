@@ -1,4 +1,4 @@
-"""`--ajar-exact` on this machine: what the program renders twice, with other numbers of threads, is equal to the last bit.
+"""`--ajar-exact` on this machine: two renders with other numbers of threads are equal to the last bit.
 
 The references of tests/images were made elsewhere. These are made here, so that the exact mode is asked in every run.
 """
