@@ -3,7 +3,8 @@
 
     .venv/bin/python tools/bench/compare.py [WIDTHxHEIGHT...]        default: 1920x1080 3840x2160
 
-Images are synthetic, of half floats in Ajar's layout, and differ in one block, so that all gates are asked.
+Images are synthetic, of half floats in Ajar's layout, and differ in one block, so that all gates are asked. A last line
+holds FLIP against the program of its authors, at the size to which large images are averaged for it.
 """
 
 from __future__ import annotations
@@ -15,11 +16,15 @@ import tempfile
 import time
 from pathlib import Path
 
+import flip_evaluator
 import numpy as np
 import OpenImageIO as oiio
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
+from ajar_tools.flip import exposures_for, hdr_flip
+from ajar_tools.gates.flip import MEDIAN_LUMINANCE, PIXELS_PER_DEGREE
+from ajar_tools.settings import Settings
 from ajar_tools.statistics import NAMES, block_means
 from synthetic import File, Recipe, scene
 
@@ -68,5 +73,19 @@ def main(sizes: list[str]) -> None:
             print(f"{size}: {wall:.2f} s, {cpu:.2f} s of CPU, report {report.stat().st_size / 1e6:.1f} MB")
 
 
+def flip(width: int, height: int) -> None:
+    """Prints how long FLIP takes, ours and its authors'."""
+    new, reference = (np.ascontiguousarray(image(width, height, seed).pixels[..., :3], np.float32) for seed in (1, 2))
+    stops = exposures_for(Settings().max_luminance, MEDIAN_LUMINANCE)
+    parameters = {"startExposure": stops[0], "stopExposure": stops[-1], "numExposures": len(stops)}
+    start = time.monotonic()
+    hdr_flip(reference, new, stops, PIXELS_PER_DEGREE)
+    between = time.monotonic()
+    flip_evaluator.evaluate(reference, new, "HDR", applyMagma=False, parameters=parameters | {"ppd": PIXELS_PER_DEGREE})
+    ours, theirs = between - start, time.monotonic() - between
+    print(f"FLIP of {width}x{height}: {ours:.2f} s, flip-evaluator {theirs:.2f} s")
+
+
 if __name__ == "__main__":
     main(sys.argv[1:] or ["1920x1080", "3840x2160"])
+    flip(640, 360)
