@@ -93,7 +93,6 @@ fn light_ends_follow_their_density() {
         };
         counts[x0.emitter as usize][place] += 1.0;
     }
-    let mut x0 = end(&lights, SURROUNDINGS, &mut rng);
     let dome = integrals(&|direction| {
         let at = lights.surroundings(direction).unwrap();
         lights.density(&at)
@@ -104,7 +103,7 @@ fn light_ends_follow_their_density() {
     }
     expected[SURROUNDINGS] = dome;
     for emitter in [ONE_SIDED, TWO_SIDED] {
-        x0 = end(&lights, emitter, &mut rng);
+        let x0 = end(&lights, emitter, &mut rng);
         let area = lights.triangle(x0.emitter).unwrap().area;
         expected[emitter] = vec![lights.density(&x0) * area / (SIDE * SIDE) as f64; SIDE * SIDE];
     }
