@@ -42,7 +42,7 @@ def pixels(path: Path) -> np.ndarray:
 
 def camera_of(bpy: str, file: Path) -> dict[str, list[float]]:
     """The camera that Blender would frame the asset with."""
-    command = [bpy, str(Path(__file__).with_name("cycles.py")), str(file), "-", "0", "0"]
+    command = [bpy, str(Path(__file__).with_name("cycles_peer.py")), str(file), "-", "0", "0"]
     said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     line = next(line for line in said.splitlines() if line.startswith("camera "))
     found: dict[str, list[float]] = json.loads(line.removeprefix("camera "))
@@ -62,7 +62,7 @@ def ours(arguments: argparse.Namespace, file: Path, camera: dict[str, list[float
 def theirs(arguments: argparse.Namespace, file: Path, camera: dict[str, list[float]], out: Path) -> None:
     """Renders by Cycles."""
     asked = json.dumps({"sky": SKY, "sun": SUN, "direction": DIRECTION, "camera": camera})
-    command = [arguments.bpy, str(Path(__file__).with_name("cycles.py")), str(file), str(out)]
+    command = [arguments.bpy, str(Path(__file__).with_name("cycles_peer.py")), str(file), str(out)]
     command += [str(arguments.size), str(arguments.spp), asked]
     subprocess.run(command, check=True, capture_output=True)
 

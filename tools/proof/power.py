@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 from ajar_tools import Picture, Settings, read
 from mutants import synthetic
 from renders import REFERENCE, Render, make
 from rules import differ
-from synthetic import File
+from synthetic import File, brighter
 
 ROUNDS = (16, 64, 256)
 RENDERS = (("cornell", "path"),)
@@ -50,14 +49,17 @@ def smallest(home: Path, image: Callable[[int, int], File], rounds: int, seeds: 
 
 
 def threshold(image: File, new: Path, right: Picture) -> float:
-    """The change from which on it is found in one image, by halving the interval."""
+    """The change from which on it is found in one image."""
+    unchanged = read(image.write(new))
+    return least_change(lambda change: differ(brighter(unchanged, 1 + change), right, Settings()))
+
+
+def least_change(found: Callable[[float], bool]) -> float:
+    """The change from which on it is found, by halving the interval."""
     low, high = LEAST, MOST
     for _ in range(STEPS):
         change = math.sqrt(low * high)
-        factor = 1 + change
-        variances = {side: variance * factor**2 for side, variance in image.variances.items()}
-        brighter = replace(image, pixels=image.pixels * [factor, factor, factor, 1], variances=variances)
-        if differ(read(brighter.write(new)), right, Settings()):
+        if found(change):
             high = change
         else:
             low = change

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
-from ajar_tools import read
+from ajar_tools import Picture, read
 from synthetic import File, Recipe
 
 ROOT = Path(__file__).parents[2]
@@ -44,28 +44,47 @@ class Render:
         return folder() / f"{self.scene}-{self.integrator}-{self.seed}-{self.rounds}{changes}.exr"
 
     def run(self) -> None:
-        """Renders, on one thread: a round of few samples, and then the other ones as that one is."""
+        """Renders, on one thread."""
         width, height = SIZE
         scene = ROOT / "scenes" / self.scene / "scene.toml"
-        begun, saved = self.path.with_name(f"part-{self.path.name}"), self.path.with_suffix(".checkpoint")
-        command = [program(), "render", scene, "-o", begun, "--integrator", self.integrator, "--seed", str(self.seed)]
-        command += ["--size", f"{width}x{height}", "--threads", "1", "--quiet", "--max-depth", str(DEPTH)]
-        command += [word for change in self.changes for word in ("--set", change)]
-        first = ["--spp", str(8 * SAMPLES), "--rounds", "1", "--checkpoint", saved]
-        subprocess.run([*command, *first], check=True)
-        subprocess.run([*command, "--rounds", str(self.rounds), "--resume", saved], check=True)
-        saved.unlink()
+        begun = self.path.with_name(f"part-{self.path.name}")
+        arguments = ["--integrator", self.integrator, "--seed", str(self.seed), "--size", f"{width}x{height}"]
+        arguments += ["--threads", "1", "--max-depth", str(DEPTH), *sets(self.changes)]
+        in_rounds(scene, begun, self.rounds, SAMPLES, arguments)
         begun.rename(self.path)
 
     def file(self) -> File:
         """The image, to be spoiled and written again."""
         picture = read(self.path)
-        assert picture.statistics is not None
         assert picture.attributes["samplesPerPixel"] == SAMPLES * self.rounds
-        colors = ("R", "G", "B", "A")
-        pixels = np.stack([picture.plane(name) for name in colors], axis=2)
-        recipe = Recipe(*SIZE, rounds=self.rounds, seed=self.seed)
-        return File(pixels, dict(picture.statistics.variances), recipe, colors, oiio.FLOAT)
+        return spoilable(picture)
+
+
+def sets(changes: Iterable[str]) -> list[str]:
+    """Arguments that change a scene."""
+    return [word for change in changes for word in ("--set", change)]
+
+
+def in_rounds(scene: Path, output: Path, rounds: int, samples: int, arguments: list[str]) -> None:
+    """Renders so many rounds of so many samples a pixel: one of them, and then the other ones as that one is."""
+    saved = output.with_suffix(".checkpoint")
+    command = [program(), "render", str(scene), "-o", str(output), "--quiet", *arguments]
+    first = ["--spp", str(8 * samples), "--rounds", "1", "--checkpoint", str(saved)]
+    subprocess.run([*command, *first], check=True)
+    subprocess.run([*command, "--rounds", str(rounds), "--resume", str(saved)], check=True)
+    saved.unlink()
+
+
+def spoilable(picture: Picture) -> File:
+    """An image of Ajar's, to be spoiled and written again."""
+    assert picture.statistics is not None
+    colors = ("R", "G", "B", "A")
+    pixels = np.stack([picture.plane(name) for name in colors], axis=2)
+    window, rounds = picture.data_window, picture.statistics.rounds
+    recipe = Recipe(window.width, window.height, rounds=rounds, seed=int(picture.attributes["ajar:seed"]))
+    return File(
+        pixels, dict(picture.statistics.variances), recipe, colors, oiio.FLOAT, picture.attributes["ajar:integrator"]
+    )
 
 
 def program() -> str:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
-from ajar_tools.statistics import NAMES, block_means
+from ajar_tools import Picture
+from ajar_tools.statistics import NAMES, as_attributes, block_means
 
 Change = Callable[[np.ndarray], np.ndarray]
 
@@ -79,6 +80,7 @@ class File:
     recipe: Recipe
     channels: tuple[str, ...] = ("R", "G", "B", "A")
     kind: oiio.TypeDesc = oiio.FLOAT
+    integrator: str = "path"
 
     def write(self, path: Path) -> Path:
         """Writes it as Ajar would."""
@@ -87,7 +89,7 @@ class File:
         spec.channelnames = self.channels
         spec.attribute("ajar:rounds", self.recipe.rounds)
         spec.attribute("samplesPerPixel", self.recipe.rounds * 4)
-        spec.attribute("ajar:integrator", "path")
+        spec.attribute("ajar:integrator", self.integrator)
         spec.attribute("ajar:sceneHash", "synthetic")
         spec.attribute("ajar:seed", str(self.recipe.seed))
         spec.attribute("ajar:complete", 1)
@@ -108,3 +110,14 @@ def file(recipe: Recipe | None = None, change: Change | None = None, **changes: 
         mean = change(mean)
     alpha = np.ones((*mean.shape[:2], 1))
     return File(np.concatenate([mean, alpha], axis=2), variances, recipe)
+
+
+def brighter(picture: Picture, factor: float) -> Picture:
+    """With other energy: colours, and the noise that is declared of them, times `factor`."""
+    statistics = picture.statistics
+    assert statistics is not None
+    pixels = picture.pixels.copy()
+    pixels[..., [picture.channels.index(name) for name in picture.color_channels]] *= factor
+    variances = {side: variance * factor**2 for side, variance in statistics.variances.items()}
+    attributes = picture.attributes | as_attributes(replace(statistics, variances=variances))
+    return replace(picture, pixels=pixels, attributes=attributes)

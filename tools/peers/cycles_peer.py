@@ -1,4 +1,4 @@
-"""A glTF file by Blender's importer and Cycles, from a Python that has bpy: cycles.py FILE OUT.exr SIZE SPP [CAMERA…]
+"""A glTF file by Blender and Cycles, from a Python that has bpy: cycles_peer.py FILE OUT.exr SIZE SPP [CAMERA…]
 
 Without camera it frames everything and prints the camera as JSON, in the axes of glTF; with one it renders.
 """
@@ -59,7 +59,7 @@ def light(sky: float, sun: float, direction: list[float]) -> None:
 def render(out: str, size: int, spp: int, camera: dict[str, list[float]]) -> None:
     """Renders linear light to an EXR."""
     lens = bpy.data.cameras.new("camera")
-    lens.sensor_fit, lens.angle_y = "VERTICAL", YFOV
+    lens.sensor_fit, lens.angle_y = "VERTICAL", math.radians(camera["yfov"]) if "yfov" in camera else YFOV
     lens.clip_start, lens.clip_end = 1e-4, 1e6
     thing = bpy.data.objects.new("camera", lens)
     position, target = from_gltf(camera["position"]), from_gltf(camera["target"])
