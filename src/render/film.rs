@@ -49,7 +49,10 @@ impl RoundFilm {
         for (channel, x) in value.to_array().into_iter().enumerate() {
             if x > 0.0 {
                 let fixed = (x * self.scale).round() as i64;
-                self.values[pixel * 3 + channel].fetch_add(fixed, Ordering::Relaxed);
+                let add = |sum: i64| Some(sum.saturating_add(fixed));
+                // Sums of what is not negative saturate alike in any order.
+                let _ =
+                    self.values[pixel * 3 + channel].fetch_update(Ordering::Relaxed, Ordering::Relaxed, add);
             }
         }
     }
@@ -194,6 +197,15 @@ mod tests {
         round.add(0, Rgb::new(-1.0, 0.0, 0.0));
         film.merge(&round, 1.0);
         assert_eq!((film.rejected(), film.mean(0)), (3, Rgb::ZERO));
+    }
+
+    #[test]
+    fn sums_too_large_stay_the_largest() {
+        let mut film = Film::new(1, 1.0);
+        let round = film.round();
+        [1e9, 1e9, 1e9, 1.0, 1e300].into_iter().for_each(|v| round.add(0, Rgb::splat(v)));
+        film.merge(&round, 1.0);
+        assert!((film.mean(0).x / LIMIT - 1.0).abs() < 1e-9);
     }
 
     #[test]

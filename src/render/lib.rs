@@ -8,6 +8,8 @@
 pub mod bsdf;
 pub mod bvh;
 pub mod camera;
+#[cfg(test)]
+mod chi2;
 pub mod distribution;
 pub mod environment;
 pub mod film;

@@ -21,6 +21,7 @@ export class Layers {
   choose(name) {
     this.name = $("layer").value = name;
     this.#has = "";
+    this.#at = 0;
     if (!name) this.#show(false);
     document.body.dataset.layer = name;
     this.follow(this.#state);

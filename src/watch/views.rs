@@ -11,6 +11,7 @@ use ajar_live::frame::Frame;
 use ajar_output::srgb_encode;
 use ajar_render::World;
 use glam::Vec3;
+use rayon::ThreadPoolBuilder;
 
 use super::screen::{Pixels, Screen};
 use crate::image::Aov;
@@ -52,10 +53,20 @@ impl Views {
             return Some(Arc::clone(frame));
         }
         let (width, height) = (world.camera.width, world.camera.height);
-        let hits = features_of(&world, Window { x0: 0, y0: 0, x1: width, y1: height }, SAMPLES);
+        let window = Window { x0: 0, y0: 0, x1: width, y1: height };
+        let hits = at_once(|| features_of(&world, window, SAMPLES));
         let frame = Arc::new(Frame::new(width as usize, height as usize, &codes(aov, &hits), None));
         *last = Some((image, aov, Arc::clone(&frame)));
         Some(frame)
+    }
+}
+
+/// Works on threads of its own: those of the render take nothing else on before the end of a round.
+fn at_once<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    match ThreadPoolBuilder::new().num_threads(rayon::current_num_threads()).build() {
+        Ok(pool) => pool.install(work),
+        // There are no threads to be had.
+        Err(_) => work(),
     }
 }
 
@@ -125,10 +136,36 @@ fn color_of(number: u32) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
+    use std::{
+        sync::atomic::{AtomicBool, AtomicUsize, Ordering},
+        time::{Duration, Instant},
+    };
+
+    use rayon::prelude::*;
+
     use super::*;
 
     fn hit(depth: f32, object: u32) -> Features {
         Features { depth, object, material: object, alpha: 1.0, normal: Vec3::Y, ..Features::default() }
+    }
+
+    #[test]
+    fn what_is_asked_for_comes_while_others_work() {
+        // Every thread of the render is busy until told, or for as long as nobody should wait.
+        let busy = Arc::new((AtomicBool::new(true), AtomicUsize::new(0)));
+        for _ in 0..rayon::current_num_threads() {
+            let busy = Arc::clone(&busy);
+            rayon::spawn(move || {
+                let started = Instant::now();
+                while busy.0.load(Ordering::SeqCst) && started.elapsed() < Duration::from_secs(20) {
+                    std::thread::yield_now();
+                }
+                busy.1.fetch_add(usize::from(busy.0.load(Ordering::SeqCst)), Ordering::SeqCst);
+            });
+        }
+        let sum: usize = at_once(|| (0..100usize).into_par_iter().sum());
+        busy.0.store(false, Ordering::SeqCst);
+        assert_eq!((sum, busy.1.load(Ordering::SeqCst)), (4950, 0));
     }
 
     #[test]

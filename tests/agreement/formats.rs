@@ -11,6 +11,10 @@ use serde_json::{Value, json};
 
 use crate::{LIMIT, blocks::Blocks, open};
 
+pub fn reads_usd() -> bool {
+    std::env::var_os("AJAR_USD_PYTHON").is_some_and(|python| !python.is_empty())
+}
+
 /// A picture of 2 × 2 texels: red, green, blue and white.
 const PNG: &str =
     "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAIAAAD91JpzAAAAEklEQVR4nGP4z8DAAMIM/4EAAB/uBfsL2WiLAAAAAElFTkSuQmCC";
@@ -186,7 +190,7 @@ fn pictures(look: &Look) -> Vec<(&'static str, Blocks)> {
     write_gltf(folder, &look.gltf);
     write_obj(folder, look.mtl);
     let mut found = vec![("glTF", render("a.gltf", 1)), ("OBJ", render("a.obj", 2))];
-    if std::env::var_os("AJAR_USD_PYTHON").is_none_or(|python| python.is_empty()) {
+    if !reads_usd() {
         println!("skipped: USD, for AJAR_USD_PYTHON is not set");
         return found;
     }

@@ -20,8 +20,10 @@ use blocks::{Blocks, HEIGHT, WIDTH};
 /// 32 rounds, and some light comes seldom and bright, which makes it more.
 const LIMIT: f64 = 5.0;
 
+/// A scene of the repository: a folder with a `scene.toml`, or a file in it.
 fn world(scene: &str) -> World {
-    open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene).join("scene.toml"))
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
+    open(&if path.is_dir() { path.join("scene.toml") } else { path })
 }
 
 /// A file of any format, ready to render.
@@ -94,4 +96,14 @@ fn reading_corner() {
 #[test]
 fn many_lights() {
     check("many-lights", 16, 4);
+}
+
+/// Reads USD, where `AJAR_USD_PYTHON` names a Python that does.
+#[test]
+fn tea_table() {
+    if !formats::reads_usd() {
+        println!("skipped: AJAR_USD_PYTHON is not set");
+        return;
+    }
+    check("tea-table/scene.usda", 16, 4);
 }

@@ -11,8 +11,16 @@ pub use laboratory::Target;
 use laboratory::Laboratory;
 
 /// All targets.
-pub const TARGETS: [Target; 7] =
-    [Target::Gltf, Target::Glb, Target::Obj, Target::Mtl, Target::Scene, Target::Ajar, Target::PlugIn];
+pub const TARGETS: [Target; 8] = [
+    Target::Gltf,
+    Target::Glb,
+    Target::Obj,
+    Target::Mtl,
+    Target::Scene,
+    Target::Ajar,
+    Target::Picture,
+    Target::PlugIn,
+];
 
 /// Tries an input; a panic is what the fuzzer looks for.
 pub fn examine(target: Target, input: &[u8]) {

@@ -25,6 +25,8 @@ pub enum Target {
     Mtl,
     Scene,
     Ajar,
+    /// The picture of a sky, in any format.
+    Picture,
     /// What a plug-in prints: lines of standard error, [`seeds::CUT`], standard output.
     PlugIn,
 }
@@ -38,6 +40,7 @@ impl Target {
             Self::Mtl => "mtl",
             Self::Scene => "scene",
             Self::Ajar => "ajar",
+            Self::Picture => "picture",
             Self::PlugIn => "plug_in",
         }
     }
@@ -51,6 +54,7 @@ impl Target {
             Self::Mtl => ["library.mtl", "box.obj"],
             Self::Scene => ["input.toml"; 2],
             Self::Ajar => ["input.ajar"; 2],
+            Self::Picture => ["input.picture", "sky.toml"],
             Self::PlugIn => ["input.streams"; 2],
         }
     }

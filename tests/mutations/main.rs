@@ -140,6 +140,11 @@ fn ajar() {
 }
 
 #[test]
+fn picture() {
+    survives(Target::Picture);
+}
+
+#[test]
 fn plug_in() {
     survives(Target::PlugIn);
 }

@@ -125,7 +125,10 @@ impl Mutator {
     /// One of the seeds, changed.
     pub fn mutate(&mut self, target: Target, seeds: &[Vec<u8>]) -> Vec<u8> {
         let seed = &seeds[self.0.below(seeds.len())];
-        if self.0.one_in(12) {
+        if target == Target::Picture && self.0.one_in(2) {
+            return self.words(seed.clone());
+        }
+        if target == Target::Picture || self.0.one_in(12) {
             return self.bytes(seed.clone());
         }
         match (target, seeds::taken_apart(seed)) {

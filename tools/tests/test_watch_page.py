@@ -4,12 +4,13 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from watching import SCENE, Watch, material, studio, swatch
+from watching import SCENE, Watch, material, painted, studio, swatch
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -275,18 +276,29 @@ def test_the_camera_is_moved_with_the_pointer(bench: Bench) -> None:
     assert bench.page.inner_text("#edits") == "None."
 
 
-def test_a_variant_is_chosen_and_saved(bench: Bench) -> None:
-    bench.changed(lambda: bench.scene.write_text(SCENE.replace("box.obj", swatch(bench.folder).name)))
+@pytest.mark.parametrize(
+    ("write", "offered", "green"),
+    [
+        (swatch, ["as the file shows", "Red", "Green"], "Green"),
+        (painted, ["Green", "Red"], "/Box:paint=Green"),
+    ],
+)
+def test_a_variant_is_chosen_and_saved(
+    bench: Bench, write: Callable[[Path], Path], offered: list[str], green: str
+) -> None:
+    bench.changed(lambda: bench.scene.write_text(SCENE.replace("box.obj", write(bench.folder).name)))
     before = bench.mean(MIDDLE)
-    assert bench.page.locator("#variants option").all_inner_texts() == ["as the file shows", "Red", "Green"]
-    bench.changed(lambda: bench.page.select_option("#variants select", "Green"))
+    assert bench.page.locator("#variants option").all_inner_texts() == offered
+    bench.changed(lambda: bench.page.select_option("#variants select", label="Green"))
     after = bench.mean(MIDDLE)
     assert after[1] / after[0] > 2 * before[1] / before[0]
-    assert 'variant = ["Green"]' in bench.page.inner_text("#edits")
+    assert f'variant = ["{green}"]' in bench.page.inner_text("#edits")
     bench.page.click("#save")
     bench.page.wait_for_function("() => document.getElementById('saved').innerText.includes('look.toml')")
     shown = [os.environ["AJAR_BIN"], "inspect", str(bench.folder / "look.toml")]
-    assert "Green" in subprocess.run(shown, check=True, capture_output=True, text=True).stdout
+    environment = {"AJAR_USD_PYTHON": sys.executable, **os.environ}
+    assert green in subprocess.run(shown, check=True, capture_output=True, text=True, env=environment).stdout
+    (bench.folder / "look.toml").unlink()
     bench.changed(lambda: bench.page.click("#revert"))
     assert bench.mean(MIDDLE) == before
     bench.changed(lambda: bench.scene.write_text(SCENE))

@@ -6,6 +6,7 @@ import os
 import signal
 import struct
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -90,12 +91,52 @@ def swatch(folder: Path) -> Path:
     return folder / "swatch.gltf"
 
 
+PAINTED = """#usda 1.0
+(
+    defaultPrim = "Box"
+    metersPerUnit = 1
+    upAxis = "Y"
+)
+def Xform "Box" (
+    prepend variantSets = "paint"
+    variants = {
+        string paint = "Red"
+    }
+)
+{
+    def Cube "Cube"
+    {
+    }
+    variantSet "paint" = {
+        "Green" {
+            over "Cube"
+            {
+                color3f[] primvars:displayColor = [(0.05, 0.8, 0.05)]
+            }
+        }
+        "Red" {
+            over "Cube"
+            {
+                color3f[] primvars:displayColor = [(0.8, 0.05, 0.05)]
+            }
+        }
+    }
+}
+"""
+
+
+def painted(folder: Path) -> Path:
+    """Writes a USD box in two variants; returns its file."""
+    (folder / "painted.usda").write_text(PAINTED)
+    return folder / "painted.usda"
+
+
 class Watch:
     """The program at work."""
 
     def __init__(self, *arguments: str | Path, state: Path) -> None:
         command = [os.environ.get("AJAR_BIN", "target/release/ajar"), "watch", *map(str, arguments)]
-        environment = {**os.environ, "XDG_STATE_HOME": str(state)}
+        environment = {"AJAR_USD_PYTHON": sys.executable, **os.environ, "XDG_STATE_HOME": str(state)}
         # The page's link and what happens come as JSON; nobody reads it to the end, so it goes to a file.
         self.log = state / "watch.log"
         with self.log.open("w") as log:

@@ -2,10 +2,10 @@ use std::{f64::consts::TAU, sync::Arc};
 
 use ajar_scene::Filter;
 use glam::Vec3;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::*;
 use crate::{
+    chi2,
     rng::{Purpose, Rng},
     texture::{Bitmap, Texels},
 };
@@ -38,25 +38,6 @@ fn only(add: impl FnOnce(&mut Environment)) -> Environment {
     environment
 }
 
-/// Cells of equal solid angle around Z.
-const CELLS: [usize; 2] = [16, 32];
-
-fn cell(direction: DVec3) -> usize {
-    let [height, around] = warp::sphere_to_square(direction);
-    (height * CELLS[0] as f64) as usize * CELLS[1] + (around * CELLS[1] as f64) as usize
-}
-
-/// Sum over `N²` points of a cell, times the solid angle they stand for.
-fn integrate(cell: usize, f: impl Fn(DVec3) -> f64) -> f64 {
-    const N: usize = 48;
-    let point =
-        |i: usize, of: usize, axis: usize| (of as f64 + (i as f64 + 0.5) / N as f64) / CELLS[axis] as f64;
-    let (row, column) = (cell / CELLS[1], cell % CELLS[1]);
-    let sum: f64 =
-        (0..N * N).map(|i| f(warp::square_to_sphere([point(i / N, row, 0), point(i % N, column, 1)]))).sum();
-    sum * 4.0 * PI / (CELLS[0] * CELLS[1] * N * N) as f64
-}
-
 #[test]
 fn the_image_hangs_as_usd_says() {
     let texture = image(8, 4, Filter::Nearest, |x, y| Vec3::new(x as f32, y as f32, 1.0));
@@ -86,21 +67,16 @@ fn directions_follow_the_density_which_integrates_to_one() {
     let environment = mixture();
     let mut rng = Rng::new(1, Purpose::Test, 0, 0);
     let n = 200_000;
-    let mut counts = vec![0.0; CELLS[0] * CELLS[1]];
-    for _ in 0..n {
-        counts[cell(environment.sample(rng.f64(), rng.pair()).1)] += 1.0;
-    }
-    let (mut chi, mut total) = (0.0, 0.0);
-    for (cell, count) in counts.iter().enumerate() {
-        let probability = integrate(cell, |w| environment.pdf(w));
-        let expected = probability * f64::from(n);
-        assert!(expected > 5.0);
-        chi += (count - expected).powi(2) / expected;
-        total += probability;
-    }
+    let probabilities = chi2::integrals(&|w| environment.pdf(w));
+    let total: f64 = probabilities.iter().sum();
     assert!((total - 1.0).abs() < 1e-3, "{total}");
-    let p = 1.0 - ChiSquared::new(counts.len() as f64 - 1.0).unwrap().cdf(chi);
-    assert!(p > 1e-4, "χ² {chi}, p {p}");
+    let mut counts = vec![0.0; probabilities.len()];
+    for _ in 0..n {
+        counts[chi2::cell(environment.sample(rng.f64(), rng.pair()).1)] += 1.0;
+    }
+    let expected: Vec<f64> = probabilities.iter().map(|p| p * f64::from(n)).collect();
+    let p = chi2::p_value(expected.into_iter().zip(counts));
+    assert!(p > 1e-4, "p {p}");
 }
 
 #[test]
@@ -112,8 +88,7 @@ fn sampling_is_unbiased_and_power_is_the_integral() {
         let (_, w) = environment.sample(rng.f64(), rng.pair());
         sum += environment.radiance(w) / environment.pdf(w) / f64::from(n);
     }
-    let integral: f64 =
-        (0..CELLS[0] * CELLS[1]).map(|c| integrate(c, |w| scalar(environment.radiance(w)))).sum();
+    let integral: f64 = chi2::integrals(&|w| scalar(environment.radiance(w))).iter().sum();
     assert!((environment.power() / integral - 1.0).abs() < 1e-3);
     assert!((scalar(sum) / integral - 1.0).abs() < 0.01);
     let mean = sum / (4.0 * PI);

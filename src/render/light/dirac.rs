@@ -64,7 +64,7 @@ impl DiracLight {
         match *self {
             Self::Point { intensity, .. } => 2.0 * TAU * scalar(intensity),
             Self::Spot { intensity, inner, outer, .. } => {
-                TAU * scalar(intensity) * ((1.0 - inner) + 0.4 * (inner - outer))
+                TAU * scalar(intensity) * ((1.0 - inner) + (inner - outer) / 3.0)
             }
             Self::Directional { illuminance, .. } => scalar(illuminance) * disc,
         }

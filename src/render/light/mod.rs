@@ -5,6 +5,8 @@
 
 mod dirac;
 mod shapes;
+#[cfg(test)]
+mod tests;
 
 pub use dirac::DiracLight;
 pub(crate) use shapes::tessellate;

@@ -2,6 +2,7 @@
 
 mod ajar;
 mod gltf;
+mod pictures;
 mod text;
 
 use crate::laboratory::Target;
@@ -21,6 +22,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
         Target::Mtl => vec![text::LIBRARY.as_bytes().to_vec()],
         Target::Scene => text::SCENES.iter().map(|text| text.as_bytes().to_vec()).collect(),
         Target::Ajar => ajar::all(),
+        Target::Picture => pictures::all(),
         Target::PlugIn => {
             let answer = |output: &Vec<u8>| [text::MESSAGES.as_bytes(), CUT, output].concat();
             ajar::all().iter().map(answer).collect()
@@ -34,6 +36,8 @@ pub fn companions() -> Vec<(&'static str, Vec<u8>)> {
         ("map.png", text::picture()),
         ("library.mtl", text::LIBRARY.into()),
         ("box.obj", text::OBJ[0].into()),
+        ("input.picture", text::picture()),
+        ("sky.toml", text::SKY.into()),
         ("base.toml", text::SCENES[1].into()),
         ("move.gltf", gltf::moving().text()),
     ]

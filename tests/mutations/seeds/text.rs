@@ -10,6 +10,16 @@ pub fn picture() -> Vec<u8> {
     STANDARD.decode(PICTURE).unwrap_or_default()
 }
 
+/// A box below the picture that is examined.
+pub const SKY: &str = r#"
+[[import]]
+file = "box.obj"
+
+[[light]]
+type = "environment"
+texture = "input.picture"
+"#;
+
 /// What a box of four parts uses.
 pub const LIBRARY: &str = "\
 newmtl a

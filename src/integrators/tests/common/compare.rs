@@ -85,8 +85,8 @@ impl Blocks {
         self.rounds.push(means);
     }
 
-    /// Mean and variance of the mean of a block.
-    fn estimate(&self, block: usize) -> (Rgb, Rgb) {
+    /// Mean and variance of the mean of a block; the last is the image.
+    pub fn estimate(&self, block: usize) -> (Rgb, Rgb) {
         let n = self.rounds.len() as f64;
         let mean = self.rounds.iter().map(|r| r[block]).sum::<Rgb>() / n;
         let squares = self.rounds.iter().map(|r| (r[block] - mean).powf(2.0)).sum::<Rgb>();

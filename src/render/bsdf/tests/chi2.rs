@@ -1,95 +1,21 @@
-//! Samples against densities: χ² on a 32 × 64 grid of the sphere, and exact inverses.
-
-use std::f64::consts::{PI, TAU};
-
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+//! Samples against densities: χ² on a grid of the sphere, and exact inverses.
 
 use super::*;
+use crate::chi2::{cell, integrals};
 
-const HEIGHTS: usize = 32;
-const AZIMUTHS: usize = 64;
 /// Probability that all tests together reject a right density.
 const SIGNIFICANCE: f64 = 1e-3;
-
-fn cell(w: DVec3) -> usize {
-    let polar = (w.z.clamp(-1.0, 1.0).acos() / PI * HEIGHTS as f64) as usize;
-    let azimuth = (w.y.atan2(w.x) / TAU).rem_euclid(1.0) * AZIMUTHS as f64;
-    polar.min(HEIGHTS - 1) * AZIMUTHS + (azimuth as usize).min(AZIMUTHS - 1)
-}
-
-/// Probability of each cell by adaptive quadrature of `density` over the polar and azimuthal angle.
-fn expected(density: &dyn Fn(DVec3) -> f64) -> Vec<f64> {
-    let (step_polar, step_azimuth) = (PI / HEIGHTS as f64, TAU / AZIMUTHS as f64);
-    let integrand = |polar: f64, azimuth: f64| {
-        let (sin, cos) = polar.sin_cos();
-        density(DVec3::new(sin * azimuth.cos(), sin * azimuth.sin(), cos)) * sin
-    };
-    (0..HEIGHTS * AZIMUTHS)
-        .map(|i| {
-            let polar = (i / AZIMUTHS) as f64 * step_polar;
-            let azimuth = (i % AZIMUTHS) as f64 * step_azimuth;
-            integrate(&integrand, [polar, azimuth], [step_polar, step_azimuth], 0)
-        })
-        .collect()
-}
-
-/// Gauss–Legendre with 4 × 4 points, split into four while the parts disagree with the whole.
-fn integrate(f: &dyn Fn(f64, f64) -> f64, from: [f64; 2], size: [f64; 2], depth: usize) -> f64 {
-    let whole = gauss(f, from, size);
-    let half = size.map(|s| 0.5 * s);
-    let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
-        .map(|[x, y]| [from[0] + x * half[0], from[1] + y * half[1]]);
-    let parts: f64 = corners.iter().map(|&c| gauss(f, c, half)).sum();
-    if depth == 7 || (whole - parts).abs() < 3e-7 + 1e-4 * parts {
-        return parts;
-    }
-    corners.iter().map(|&c| integrate(f, c, half, depth + 1)).sum()
-}
-
-fn gauss(f: &dyn Fn(f64, f64) -> f64, from: [f64; 2], size: [f64; 2]) -> f64 {
-    const NODES: [(f64, f64); 4] = [
-        (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-        (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-        (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-        (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-    ];
-    let mut sum = 0.0;
-    for (x, wx) in NODES {
-        for (y, wy) in NODES {
-            sum += wx * wy * f(from[0] + x * size[0], from[1] + y * size[1]);
-        }
-    }
-    sum * size[0] * size[1]
-}
 
 /// p-value of the hypothesis that `sample` has `density`; samples that fail are one more cell, which the rest of
 /// the density must fill.
 fn p_value(sample: &mut dyn FnMut() -> Option<DVec3>, samples: u32, density: &dyn Fn(DVec3) -> f64) -> f64 {
-    let expected: Vec<f64> = expected(density).iter().map(|p| p * f64::from(samples)).collect();
+    let expected: Vec<f64> = integrals(density).iter().map(|p| p * f64::from(samples)).collect();
     let mut counts = vec![0.0; expected.len() + 1];
     for _ in 0..samples {
         counts[sample().map_or(expected.len(), cell)] += 1.0;
     }
     let failed = (f64::from(samples) - expected.iter().sum::<f64>()).max(0.0);
-    let mut cells: Vec<(f64, f64)> = expected.into_iter().chain([failed]).zip(counts).collect();
-    cells.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut statistic, mut degrees, mut pool) = (0.0, -1.0, (0.0, 0.0));
-    for (e, c) in cells {
-        pool = (pool.0 + e, pool.1 + c);
-        if pool.0 > 5.0 {
-            statistic += (pool.1 - pool.0) * (pool.1 - pool.0) / pool.0;
-            degrees += 1.0;
-            pool = (0.0, 0.0);
-        }
-    }
-    // A remainder that no density expects.
-    if pool.1 > 5.0 + 10.0 * pool.0 {
-        return 0.0;
-    }
-    if degrees < 1.0 {
-        return 1.0;
-    }
-    1.0 - ChiSquared::new(degrees).unwrap().cdf(statistic)
+    crate::chi2::p_value(expected.into_iter().chain([failed]).zip(counts))
 }
 
 const DIRECTIONS: [f64; 4] = [0.95, 0.2, -0.8, -0.35];
@@ -183,7 +109,7 @@ fn densities_integrate_to_the_chance_of_a_smooth_event() {
     for (name, bsdf, known, lobe) in cases().into_iter().filter(|case| case.3.is_none()) {
         assert!(lobe.is_none());
         let side = Side::TowardLight;
-        let integral: f64 = expected(&|w| bsdf.pdf(side, known, w)).iter().sum();
+        let integral: f64 = integrals(&|w| bsdf.pdf(side, known, w)).iter().sum();
         let mut chance = 0.0;
         for (lobe, weight) in bsdf.lobe_weights(side, known).into_iter().enumerate().filter(|(_, w)| *w > 0.0)
         {

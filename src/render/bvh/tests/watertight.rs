@@ -2,6 +2,7 @@
 
 use ajar_scene::Mesh;
 use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
 
 use super::{blocked, closed, cube, direction, icosphere, in_cube, lumpy, nearest, placed, rng};
 use crate::bvh::Geometry;
@@ -28,7 +29,9 @@ fn escapes(geometry: &Geometry, mesh: &Mesh, to_world: DAffine3, rays: u64, core
     escaped
 }
 
-fn check(rays: u64) {
+#[test]
+fn closed_meshes_let_none_of_ten_million_rays_out() {
+    const RAYS: u64 = 10_000_000;
     let skewed = DAffine3::from_mat3_translation(
         DMat3::from_rotation_y(0.7)
             * DMat3::from_diagonal(DVec3::new(1.0, -2.5, 0.3))
@@ -47,26 +50,16 @@ fn check(rays: u64) {
         (cube(), 0.9),
         (closed(2, |p| 1.0 + 20.0 * p.z.abs().powi(30)), 0.4),
     ];
-    let part = rays / (2 * maps.len() * meshes.len()) as u64;
-    for (m, (mesh, core)) in meshes.iter().enumerate() {
-        for (k, map) in maps.iter().enumerate() {
-            for own in [false, true] {
-                let geometry = placed(mesh.clone(), *map, own);
-                assert_eq!(escapes(&geometry, mesh, *map, part, *core), 0, "mesh {m}, map {k}, own {own}");
-            }
-        }
-    }
-}
-
-#[test]
-fn closed_meshes_let_no_ray_out() {
-    check(1_000_000);
-}
-
-#[test]
-#[ignore = "a minute"]
-fn closed_meshes_let_none_of_many_rays_out() {
-    check(10_000_000);
+    let part = RAYS / (2 * maps.len() * meshes.len()) as u64;
+    let cases = meshes
+        .iter()
+        .flat_map(|mesh| maps.map(|map| (mesh, map)))
+        .flat_map(|case| [(case, false), (case, true)]);
+    let cases: Vec<_> = cases.enumerate().collect();
+    cases.par_iter().for_each(|(case, (((mesh, core), map), own))| {
+        let geometry = placed(mesh.clone(), *map, *own);
+        assert_eq!(escapes(&geometry, mesh, *map, part, *core), 0, "case {case}");
+    });
 }
 
 /// A mesh near the origin of a world that also holds something far: padding follows the boxes, not the scene.
