@@ -23,7 +23,7 @@ INTEGRATORS = ("path", "bdpt", "mlt", "ajar")
 SIZE = "192x144"
 FEW = 8
 # The brightness of an image by `mlt` has noise of its own in each round.
-MANY = {"path": 32, "bdpt": 32, "mlt": 96, "ajar": 32}
+MANY = {"path": 32, "bdpt": 32, "mlt": 64, "ajar": 32}
 REFERENCE = 100
 
 Renderer = Callable[..., Path]
