@@ -151,6 +151,9 @@ fn progress(state: &State) -> String {
         Phase::Stopped => "stopped",
     };
     let [width, height] = state.size;
+    if state.rounds == 0 {
+        return format!("{phase} {width}x{height}, no round finished yet");
+    }
     let noise = state.noise.map_or(String::new(), |noise| format!(", noise {:.1} %", noise * 100.0));
     let time =
         Duration::try_from_secs_f64(state.seconds).map_or(String::new(), |t| format!(", {}", duration(t)));

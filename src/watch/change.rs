@@ -38,6 +38,7 @@ impl Watch<'_> {
             imports: &self.imports,
             draft: self.draft.at(&self.layer, self.subject.path()),
             variants: if is_scene_file(self.subject.path()) { Vec::new() } else { self.draft.variants() },
+            is_clay: self.draft.is_clay(),
             wants_output: self.subject.wants_images() || self.archive.is_some(),
             before: self.opened.as_ref().map(|opened| (&*opened.world, &self.changed)),
         };
@@ -69,6 +70,7 @@ impl Watch<'_> {
         self.state.errors.clear();
         self.state.image += 1;
         self.state.edits = self.draft.text();
+        self.state.is_clay = self.draft.is_clay();
         if let Some(region) = self.region {
             opened.plan.settings.window = region;
         }

@@ -82,11 +82,28 @@ pub(super) struct Draft {
     tables: BTreeMap<(Kind, String), Table>,
     /// The camera to look through.
     camera: Option<String>,
+    /// Whether everything is shown as if made of clay: a way to look at a scene, which no file says.
+    is_clay: bool,
 }
 
 impl Draft {
     pub fn is_empty(&self) -> bool {
         self.tables.is_empty() && self.camera.is_none()
+    }
+
+    /// Forgets all that could be saved.
+    pub fn clear(&mut self) {
+        *self = Self { is_clay: self.is_clay, ..Self::default() };
+    }
+
+    /// Whether everything is shown as if made of clay.
+    pub fn is_clay(&self) -> bool {
+        self.is_clay
+    }
+
+    /// Shows everything as if made of clay, or as it is.
+    pub fn show_clay(&mut self, show: bool) {
+        self.is_clay = show;
     }
 
     /// Adds a change, over those before.

@@ -40,7 +40,10 @@ impl Watch<'_> {
                 self.edit(&what, |draft, _| draft.show_variants(import, variants));
             }
             Request::Set(setting) => self.edit(&setting.label(), |draft, _| draft.set(setting.clone())),
-            Request::Revert {} => self.edit("edits dropped", |draft, _| *draft = Draft::default()),
+            Request::Clay { show } => {
+                self.edit(if show { "clay" } else { "clay off" }, |draft, _| draft.show_clay(show));
+            }
+            Request::Revert {} => self.edit("edits dropped", |draft, _| draft.clear()),
             Request::Save {} => self.save(),
         }
     }
@@ -67,11 +70,11 @@ impl Watch<'_> {
 
     fn probe(&self, x: u32, y: u32, reply: &Reply) {
         let Some((value, error)) = self.screen.pixel(x, y) else { return };
-        let found = self.opened.as_ref().map(|opened| what_is_at(opened, x, y)).unwrap_or_default();
         let answer = json!({
             "type": "probe", "x": x, "y": y,
             // JSON has no NaN; a page takes null for it.
-            "value": value, "error": error, "object": found[0], "material": found[1],
+            "value": value, "error": error,
+            "hit": self.opened.as_ref().and_then(|opened| what_is_at(opened, x, y)),
         });
         reply.send(answer.to_string());
     }
@@ -86,16 +89,21 @@ impl Watch<'_> {
     }
 }
 
-/// Names of the object and of the material at a pixel.
-fn what_is_at(opened: &Opened, x: u32, y: u32) -> [Option<String>; 2] {
+/// Names of the object and of the material at a pixel, and where they are, if there is something.
+fn what_is_at(opened: &Opened, x: u32, y: u32) -> Option<serde_json::Value> {
     let world = &opened.world;
-    let hit = features(world, Window { x0: x, y0: y, x1: x + 1, y1: y + 1 });
-    let Some(hit) = hit.first().filter(|hit| hit.object > 0) else { return [None, None] };
+    let hits = features(world, Window { x0: x, y0: y, x1: x + 1, y1: y + 1 });
+    let hit = hits.first().filter(|hit| hit.object > 0)?;
     let instance = world.instances().get(hit.object as usize - 1);
-    let object = instance.and_then(|it| world.scene.nodes.get(it.node)).map(|node| node.name.clone());
+    let object = instance.and_then(|it| world.scene.nodes.get(it.node)).map(|node| &node.name);
     let material =
         hit.material.checked_sub(1).and_then(|index| world.scene.materials.iter().nth(index as usize));
-    [object, material.map(|material| material.name.clone())]
+    Some(json!({
+        "object": object,
+        "material": material.map(|material| &material.name),
+        "depth": hit.depth,
+        "normal": hit.normal.to_array(),
+    }))
 }
 
 /// The point that the camera turns about: what is in the middle of the image, else where it is in focus.

@@ -6,6 +6,7 @@
 
 mod archive;
 mod change;
+mod clay;
 mod describe;
 mod draft;
 mod edits;

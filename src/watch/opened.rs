@@ -14,7 +14,7 @@ use ajar_render::{
 use ajar_scene::{Camera, Cause, Diagnostic, Looked, SceneFile, Setting, VariedImport};
 use glam::DAffine3;
 
-use super::{Subject, describe, imports::Imports};
+use super::{Subject, clay, describe, imports::Imports};
 use crate::{
     image::Destination,
     plan::Plan,
@@ -54,6 +54,8 @@ pub(super) struct Desk<'a> {
     pub draft: Option<(PathBuf, String)>,
     /// Variants of the asset, where it is one.
     pub variants: Vec<String>,
+    /// Whether everything is to look as if made of clay.
+    pub is_clay: bool,
     /// Whether something will be written of the scene.
     pub wants_output: bool,
     /// The scene before, and the files that changed since.
@@ -90,6 +92,9 @@ impl Desk<'_> {
         let (variants, looked) = (self.variants.clone(), looked.clone());
         let reading = Reading { draft, variants, looked: looked.clone(), import: &import };
         let mut file = subject.open(&reading)?;
+        if self.is_clay {
+            clay::cover(&mut file.scene);
+        }
         let hash = self.wants_output.then(|| file.scene.content_hash());
         let lights = describe::lights(&file.scene, &file.settings);
         let cameras = file.scene.cameras.len();

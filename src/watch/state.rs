@@ -63,6 +63,8 @@ pub struct State {
     pub snapshots: Vec<Label>,
     /// What pages changed, as a scene file.
     pub edits: String,
+    /// Whether everything is shown as if made of clay.
+    pub is_clay: bool,
     /// The file that these were saved to.
     pub saved: Option<String>,
 }
