@@ -29,6 +29,8 @@ use crate::{kept::kept, shard::Shard};
 pub struct Loaded {
     /// The scene with defaults added.
     pub file: SceneFile,
+    /// What is said of these defaults.
+    pub added: Vec<Diagnostic>,
     /// Stable hash of the scene.
     pub hash: String,
 }
@@ -75,16 +77,16 @@ pub struct Reading<'a> {
 pub fn load(path: &Path, options: &LoadOptions<'_>) -> Result<Loaded, Vec<Diagnostic>> {
     let mut file = open(path, options)?;
     let hash = file.scene.content_hash();
-    complete(path, options, &mut file);
-    Ok(Loaded { file, hash })
+    let added = complete(path, options, &mut file);
+    Ok(Loaded { file, added, hash })
 }
 
-/// Adds a camera or light where there is none.
-pub fn complete(path: &Path, options: &LoadOptions<'_>, file: &mut SceneFile) {
+/// Adds a camera or light where there is none, and says so.
+pub fn complete(path: &Path, options: &LoadOptions<'_>, file: &mut SceneFile) -> Vec<Diagnostic> {
     let [width, height] = film_size(options.size, file, None).map(f64::from);
     let camera = file.scene.add_default_camera(width / height);
     let light = file.scene.add_default_light();
-    file.diagnostics.extend(about(path, camera.into_iter().chain(light)));
+    about(path, camera.into_iter().chain(light))
 }
 
 /// Reads and checks a file as it is.

@@ -72,7 +72,8 @@ impl Input {
     /// Adds the camera or light that the file lacks.
     pub fn complete(&self, size: Option<[u32; 2]>, file: &mut SceneFile) {
         let choice = self.chosen.choice();
-        session::complete(&self.file, &self.options(size, &choice), file);
+        let added = session::complete(&self.file, &self.options(size, &choice), file);
+        file.diagnostics.extend(added);
     }
 
     fn options<'a>(&'a self, size: Option<[u32; 2]>, choice: &'a Choice) -> LoadOptions<'a> {

@@ -30,6 +30,7 @@ impl Progress {
             if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}") {
                 bar.set_style(style.progress_chars("━╸ "));
             }
+            bar.set_message("getting ready for the first round");
             bar
         });
         Self { bar, last: Instant::now(), quiet, log }

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use ajar_live::tev::Tev;
-use ajar_scene::{Cause, Diagnostic, SceneFile, Severity};
+use ajar_scene::{Cause, Diagnostic, SceneFile, Setting, Severity};
 
 use super::{
     Exit,
     appearance::Appearance,
+    arguments::parse_exr,
     block::Block,
     demand::Demand,
     input::Input,
@@ -31,7 +32,7 @@ pub(super) struct Args {
     #[command(flatten)]
     input: Input,
     /// Write each finished image here, with a PNG preview beside it
-    #[arg(short, long, value_name = "OUT.exr")]
+    #[arg(short, long, value_name = "OUT.exr", value_parser = parse_exr)]
     output: Option<PathBuf>,
     /// Keep the image of before as EXR in this folder at each change, and the last one at the end
     #[arg(long, value_name = "FOLDER")]
@@ -72,7 +73,10 @@ impl Subject for Args {
     }
 
     fn plan(&self, file: &SceneFile) -> Result<Plan, Diagnostic> {
-        self.demand.or_noise(&file.render, NOISE).plan(file, None)
+        let blame = |complaint| Setting::blame(&file.settings, complaint);
+        let plan = self.demand.or_noise(&file.render, NOISE).plan(file, None).map_err(blame)?;
+        plan.check_memory(self.input.memory_limit).map_err(blame)?;
+        Ok(plan)
     }
 
     fn camera<'a>(&'a self, file: &'a SceneFile) -> Option<&'a str> {
@@ -84,13 +88,15 @@ impl Subject for Args {
     }
 
     fn destination(&self, file: &SceneFile) -> Result<Destination, Diagnostic> {
-        let form = self.appearance.form(&file.output)?;
+        let form = self.appearance.form(&file.output).map_err(|d| Setting::blame(&file.settings, d))?;
         let mut output = file.output.clone();
         if self.output.is_some() {
             (output.path, output.png) = (self.output.clone(), None);
         }
         let (exr, png) = session::output_paths(&self.input.file, &output);
-        Ok(Destination { exr, png, form })
+        let destination = Destination { exr, png, form };
+        destination.check(&file.files)?;
+        Ok(destination)
     }
 
     fn memory_limit(&self) -> u64 {

@@ -4,8 +4,8 @@
     pip install numpy
     python tools/bench/large.py target/release/ajar
 
-writes a GLB of five million triangles (a rough sheet with normals) and renders it at one sample a pixel: reading,
-building the hierarchy, one round, writing. `--triangles` takes another size, `--threads` another number of threads.
+writes a GLB of five million triangles (a rough sheet with normals) and renders it at one sample a pixel, by path
+tracing and by default: reading, building the hierarchy, learning, one round, writing. `--triangles` takes another size, `--threads` another number of threads.
 """
 
 import argparse
@@ -91,7 +91,8 @@ def main():
         for name, command in [
             ("reading alone", ["inspect", str(path)]),
             ("reading and building", [*image, "--dry-run"]),
-            ("first pixels, 1280x720", [*image, "--spp", "1"]),
+            ("first pixels by path", [*image, "--spp", "1", "--integrator", "path"]),
+            ("first pixels by ajar", [*image, "--spp", "1", "--integrator", "ajar"]),
         ]:
             clock, processor, memory = measure([program, *command])
             print(f"{name:24} {clock:6.2f} s, {processor:6.2f} s of processors, {memory / 2**30:.2f} GiB")
