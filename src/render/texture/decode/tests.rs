@@ -87,7 +87,7 @@ fn sixteen_bits_and_floats_are_kept() {
 
 #[test]
 fn grey_floats_in_tiff_are_kept() {
-    use tiff::encoder::{TiffEncoder, colortype::Gray32Float};
+    use ::tiff::encoder::{TiffEncoder, colortype::Gray32Float};
     let floats: Vec<f32> = (0..6).map(|i| i as f32 * 100.5 - 3.0).collect();
     let mut file = Cursor::new(Vec::new());
     TiffEncoder::new(&mut file).unwrap().write_image::<Gray32Float>(3, 2, &floats).unwrap();
