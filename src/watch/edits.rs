@@ -56,6 +56,7 @@ impl Watch<'_> {
         change(&mut self.draft, opened);
         if self.draft != before {
             self.state.changed = vec![what.to_owned()];
+            (self.state.saved, self.state.saved_without) = (None, Vec::new());
             self.gesture.step(what, Instant::now());
             self.outdate();
         }

@@ -67,7 +67,7 @@ pub struct State {
     pub edits: String,
     /// Whether everything is shown as if made of clay.
     pub is_clay: bool,
-    /// The file that these were saved to.
+    /// The file that these are saved to, as they are.
     pub saved: Option<String>,
     /// Options of the command line that this file cannot say.
     pub saved_without: Vec<String>,
