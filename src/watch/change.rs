@@ -161,7 +161,7 @@ impl Watch<'_> {
         let worker = rested.map_or_else(
             || {
                 self.state.status(&Status::default(), &plan);
-                let job = Job { world, camera, plan };
+                let job = Job { world, camera, plan, wants_glances: !self.once };
                 Worker::start(self.number, job, Arc::clone(&self.screen), self.events.0.clone())
             },
             Ok,

@@ -38,6 +38,8 @@ pub(super) struct Job {
     /// The camera and its place.
     pub camera: (ajar_scene::Camera, glam::DAffine3),
     pub plan: Plan,
+    /// Whether somebody waits to see something before the first round.
+    pub wants_glances: bool,
 }
 
 /// What is told of a render.
@@ -144,7 +146,8 @@ impl Work {
     ) {
         let Job { world, plan, .. } = &self.job;
         let cx = Context { world, settings: &plan.settings, cancel };
-        let mut glances = self.glance(cancel).map(|done| MoreGlances::start(Arc::clone(self), done, is_seen));
+        let glance = if self.job.wants_glances { self.glance(cancel) } else { None };
+        let mut glances = glance.map(|done| MoreGlances::start(Arc::clone(self), done, is_seen));
         let mut leg = Leg::begin(world, &plan.settings, None);
         let mut rules = plan.rules;
         let prepared = plan.integrator.prepare(cx);

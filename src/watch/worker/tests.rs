@@ -57,7 +57,7 @@ fn job(integrator: &'static dyn Integrator, rounds: Option<u64>) -> Job {
         metropolis: ajar_integrators::Metropolis::default(),
     };
     let rules = StopRules { rounds, ..StopRules::default() };
-    Job { world, camera, plan: Plan { integrator, size, settings, rules } }
+    Job { world, camera, plan: Plan { integrator, size, settings, rules }, wants_glances: true }
 }
 
 /// What `ajar render` makes of it.
