@@ -13,7 +13,8 @@ from pathlib import Path
 
 from ajar_tools.comparison import compare
 from ajar_tools.junit import annotation, junit
-from ajar_tools.settings import Settings, SettingsError, load
+from ajar_tools.picture import CannotCompareError
+from ajar_tools.settings import Settings, SettingsError, checked, load
 from ajar_tools.verdict import Outcome, Verdict
 
 DESCRIPTION = "Say whether two OpenEXR files show the same picture, but for noise."
@@ -60,7 +61,7 @@ def run(arguments: list[str]) -> int:
         verdict = compare(options.new, options.reference, settings)
         tell(options, verdict)
         write(options, settings, verdict, f"{program()} {shlex.join(arguments)}")
-    except SettingsError as error:
+    except (SettingsError, CannotCompareError) as error:
         return refuse(str(error))
     except MemoryError:
         return refuse("there is not enough memory")
@@ -88,9 +89,7 @@ def tell(options: argparse.Namespace, verdict: Verdict) -> None:
 def with_flags(settings: Settings, options: argparse.Namespace) -> Settings:
     """Flags beat the file."""
     if options.alpha is not None:
-        if not 0 < options.alpha < 1:
-            parser().error("--alpha is a probability, between 0 and 1")
-        settings = replace(settings, alpha=options.alpha)
+        settings = replace(settings, alpha=checked("alpha", options.alpha, settings.alpha, "the command line"))
     return replace(settings, other_renderer=settings.other_renderer or options.other_renderer)
 
 

@@ -19,6 +19,8 @@ from ajar_tools.statistics import BlockStatistics, read_statistics
 # Samples (pixels × channels) that are read at most: 1.6 GB of floats.
 MOST_SAMPLES = 400_000_000
 MAGIC = b"\x76\x2f\x31\x01"
+# Channels that a person sees, the first of these that a file has.
+COLORS = (["R", "G", "B"], ["Y"])
 
 
 class CannotCompareError(Exception):
@@ -62,6 +64,10 @@ class Picture:
         indices = [self.channels.index(name) for name in self.color_channels]
         return np.take(self.pixels, indices, axis=2)
 
+    def has(self, names: list[str]) -> bool:
+        """Whether all of these channels are there."""
+        return set(names) <= set(self.channels)
+
     @property
     def color_channels(self) -> list[str]:
         """The channels that a person sees: R, G, B, or Y.
@@ -69,15 +75,16 @@ class Picture:
         Raises:
             CannotCompareError: there are none.
         """
-        for names in (["R", "G", "B"], ["Y"]):
-            if set(names) <= set(self.channels):
-                return names
+        for names in filter(self.has, COLORS):
+            return names
         have = ", ".join(self.channels[:8])
         raise CannotCompareError(f"{self.path} has neither the channels R, G and B nor Y, but {have}")
 
     @property
     def statistics(self) -> BlockStatistics | None:
-        """What the file says about its noise; `None` where it says nothing."""
+        """What the file says about the noise of R, G and B; `None` where it says nothing."""
+        if not self.has(COLORS[0]):
+            return None
         return read_statistics(self.attributes, (self.data_window.width, self.data_window.height))
 
     def rounding(self) -> float:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 # The gates whose pass says that the pictures are the same, the first that passes.
 DECISIVE = ("exact", "statistics", "flip")
+UNDECIDED = "no gate is left that could say that the pictures are the same"
 
 
 class Outcome(Enum):
@@ -67,14 +68,18 @@ class Verdict:
         return [gate for gate in self.gates if gate.status is Status.FAIL]
 
     @property
+    def deciding(self) -> list[GateResult]:
+        """The gates that say that the pictures are the same."""
+        return [gate for gate in self.gates if gate.status is Status.PASS and gate.gate in DECISIVE]
+
+    @property
     def reason(self) -> str:
         """What decided, in words."""
         if self.outcome is Outcome.CANNOT:
             return self.problem
         if self.outcome is Outcome.FAIL:
-            return "; ".join(gate.message for gate in self.failures)
-        judges = [gate.message for gate in self.gates if gate.status is Status.PASS and gate.gate in DECISIVE]
-        return judges[0] if judges else "nothing that was asked differs"
+            return "; ".join(gate.message for gate in self.failures) or UNDECIDED
+        return self.deciding[0].message
 
     def title(self) -> str:
         """The verdict about which files."""

@@ -79,6 +79,31 @@ def test_no_colours(good: Path, tmp_path: Path) -> None:
         _ = read(write(tmp_path / "z.exr", spec)).color
 
 
+def test_a_report_of_files_without_colours(good: Path, tmp_path: Path) -> None:
+    """A layer by its name alone: another picture where only one file has it, none to compare where both do."""
+    spec = oiio.ImageSpec(96, 72, 3, oiio.FLOAT)
+    spec.channelnames = ("beauty.R", "beauty.G", "beauty.B")
+    layer = write(tmp_path / "layer.exr", spec)
+    for pair, code in (((layer, good), 1), ((good, layer), 1), ((layer, layer), 2)):
+        command = [sys.executable, "-m", "ajar_tools", "compare", *pair, "--html", tmp_path / "report.html"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+        assert done.returncode == code, done.stderr
+        assert "beauty.R" in done.stdout + done.stderr
+        assert "Traceback" not in done.stderr
+
+
+def test_luminance_alone_has_no_statistics_of_colours(good: Path, tmp_path: Path) -> None:
+    paths = []
+    for seed, scale in ((1, 1.0), (2, 1.0), (3, 3.0)):
+        grey = file(seed=seed, scale=scale, noise=0.05)
+        grey.pixels, grey.channels = grey.pixels[..., :1], ("Y",)
+        paths.append(grey.write(tmp_path / f"{seed}.exr"))
+    reference, twin, other = paths
+    verdict = compare(twin, reference)
+    assert verdict.outcome is Outcome.PASS, verdict.text()
+    assert compare(other, reference).outcome is Outcome.FAIL
+
+
 def test_colours_of_whole_numbers(good: Path, tmp_path: Path) -> None:
     assert "whole numbers" in refused(write(tmp_path / "a.exr", oiio.ImageSpec(96, 72, 4, oiio.UINT)), good)
 
@@ -156,7 +181,13 @@ def test_random_damage_never_passes_unnoticed(good: Path, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize(
     ("arguments", "code"),
-    [(["good", "good"], 0), (["good", "missing.exr"], 2), (["good"], 2), (["good", "good", "--alpha", "3"], 2)],
+    [
+        (["good", "good"], 0),
+        (["good", "missing.exr"], 2),
+        (["good"], 2),
+        (["good", "good", "--alpha", "3"], 2),
+        (["good", "good", "--alpha", "0"], 2),
+    ],
 )
 def test_exit_codes(arguments: list[str], code: int, good: Path) -> None:
     arguments = [str(good) if word == "good" else word for word in arguments]

@@ -158,6 +158,12 @@ def test_a_renderer_that_is_missing_is_a_failure(project: pytest.Pytester, monke
     [
         ("flip_maen = 0.1", '*unknown key "flip_maen"; did you mean "flip_mean"*'),
         ('alpha = "small"', "*alpha must be a number*"),
+        ("alpha = 0", "*alpha must be a number, from 1e-100 to 0.5*"),
+        ("alpha = 7", "*alpha must be a number, from 1e-100 to 0.5*"),
+        ("max_luminance = 0", "*max_luminance must be a number, from 0.01 to 1e+06*"),
+        ("max_error = inf", "*max_error must be a number, zero or more*"),
+        ("excused = 3", "*exceptions are tables*"),
+        ('[[excused]]\ngate = "flip"\nreason = "x"\nuntil = 2999-01-01T10:00:00', "*needs a date*"),
         ('[[excused]]\ngate = "flip"\nreason = "noise"', "*needs gate, reason and until*"),
         ('[[excused]]\ngate = "finite"\nreason = "x"\nuntil = 2999-01-01', "*cannot be excused*"),
         ('[[excused]]\ngate = "flip"\nreason = "old"\nuntil = 2020-01-01', "*ended on 2020-01-01 (old)*"),
@@ -175,7 +181,7 @@ def test_an_exception_lets_a_gate_fail_and_is_shown(project: pytest.Pytester) ->
     run(project, "--ajar-update")
     folder = write_scene(project.path, "door", seed=2, scale=1.05)
     (folder / "compare.toml").write_text(
-        '[[excused]]\ngate = "statistics"\nreason = "new lamp, issue 12"\nuntil = 2999-01-01\n'
+        'flip_mean = 0.1\n[[excused]]\ngate = "statistics"\nreason = "new lamp, issue 12"\nuntil = 2999-01-01\n'
     )
     run(project).assert_outcomes(passed=1)
     verdict = json.loads((project.path / "ajar-artifacts/door/verdict.json").read_text())

@@ -150,7 +150,7 @@ def excess_scatter(test: Level, settings: Settings) -> Scatter | None:
         return None
     value = float(mean[noisy].mean())
     error = math.sqrt(max(neighbour_covariance(np.where(noisy, mean - value, 0.0)), 1e-12)) / count
-    limit = settings.dispersion + NormalDist().inv_cdf(1 - settings.alpha * SCATTER_SHARE) * error
+    limit = settings.dispersion - NormalDist().inv_cdf(settings.alpha * SCATTER_SHARE) * error
     return Scatter(value, value > limit)
 
 
