@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ajar_tools.comparison import compare
-from ajar_tools.junit import annotation, junit
+from ajar_tools.junit import annotation, junit, title
 from ajar_tools.picture import CannotCompareError
 from ajar_tools.settings import Settings, SettingsError, checked, load
 from ajar_tools.verdict import Outcome, Verdict
@@ -83,7 +83,7 @@ def tell(options: argparse.Namespace, verdict: Verdict) -> None:
     elif not (options.quiet and verdict.outcome is Outcome.PASS) and str(options.json) != "-":
         print(verdict.text())
     if options.github and verdict.outcome is not Outcome.PASS:
-        print(annotation(Path(options.reference), verdict.headline()))
+        print(annotation(Path(options.reference), verdict.headline(), title(verdict)))
 
 
 def with_flags(settings: Settings, options: argparse.Namespace) -> Settings:

@@ -13,6 +13,8 @@ from ajar_tools.verdict import GateResult, Outcome, Status, Verdict
 
 # Beyond these, other gates have nothing to say: differing windows, or pixels that are no numbers.
 ENDING = ("structure", "finite")
+# A change of all light beyond which a comparison that could not see it is worth a warning.
+VAGUE = 0.2
 
 
 def compare(new: str | Path, reference: str | Path, settings: Settings | None = None) -> Verdict:
@@ -48,6 +50,11 @@ def compare_pictures(new: Picture, reference: Picture, settings: Settings) -> Ve
         flip.check(verdict.flip, settings, unjudged(statistics, settings)),
         numbers.check(new, reference, settings),
     ]
+    change = statistics.numbers.get("smallest_change", 0.0)
+    if statistics.status is Status.PASS and change > VAGUE:
+        verdict.warnings.append(
+            f"so much noise is declared that only {change:.0%} more or less light would have been seen"
+        )
     return judge(verdict, settings)
 
 

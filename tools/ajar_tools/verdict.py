@@ -55,8 +55,12 @@ class Verdict:
     gates: list[GateResult] = field(default_factory=list)
     problem: str = ""
     """Why there is nothing to compare."""
+    review: str = ""
+    """What the new image becomes, where nobody judges it: "new reference" and the like."""
     exceptions: list[str] = field(default_factory=list)
     """Failures that the settings excuse, in words."""
+    warnings: list[str] = field(default_factory=list)
+    """Why a pass says little."""
     pictures: tuple[Picture, Picture] | None = None
     """What was compared, for reports: the new image and the reference."""
     flip: FlipMap | None = None
@@ -75,7 +79,7 @@ class Verdict:
     @property
     def reason(self) -> str:
         """What decided, in words."""
-        if self.outcome is Outcome.CANNOT:
+        if self.problem:
             return self.problem
         if self.outcome is Outcome.FAIL:
             return "; ".join(gate.message for gate in self.failures) or UNDECIDED
@@ -83,6 +87,8 @@ class Verdict:
 
     def title(self) -> str:
         """The verdict about which files."""
+        if self.review:
+            return f"{self.review.upper()}: {self.new}"
         if self.outcome is Outcome.CANNOT:
             return "CANNOT COMPARE"
         if self.outcome is Outcome.PASS:
@@ -91,13 +97,15 @@ class Verdict:
 
     def headline(self) -> str:
         """One sentence with the reason of what is not a pass."""
-        return self.title() if self.outcome is Outcome.PASS else f"{self.title()}: {self.reason}"
+        silent = self.outcome is Outcome.PASS and not self.review
+        return self.title() if silent else f"{self.title()}: {self.reason}"
 
     def text(self) -> str:
         """The title and a line a gate."""
         lines = [self.title() if self.gates else self.headline()]
         lines += [f"  {i}. {g.gate:<10} {g.status.value:<6}  {g.message}" for i, g in enumerate(self.gates, 1)]
         lines += [f"  excused: {line}" for line in self.exceptions]
+        lines += [f"  warning: {line}" for line in self.warnings]
         return "\n".join(lines)
 
     def as_dict(self) -> dict[str, Any]:
@@ -115,8 +123,10 @@ class Verdict:
                 "new": self.new,
                 "reference": self.reference,
                 "problem": self.problem,
+                "review": self.review,
                 "gates": gates,
                 "exceptions": self.exceptions,
+                "warnings": self.warnings,
             }
         )
 

@@ -15,7 +15,7 @@ from ajar_tools.comparison import compare_pictures
 from ajar_tools.gates import statistical
 from ajar_tools.settings import ExcusedGate
 from ajar_tools.verdict import Status
-from synthetic import File, Recipe, file
+from synthetic import File, Recipe, brighter, file
 
 TWINS = 40
 
@@ -246,6 +246,34 @@ def test_a_short_render_that_missed_light_is_judged_by_the_noise_of_the_long_one
     assert statistical.check(new, right, Settings()).status is Status.PASS
     new.attributes["ajar:integrator"] = "bdpt"
     assert statistical.check(new, right, Settings()).status is Status.FAIL
+
+
+def test_the_smallest_change_that_could_be_found_is_told(reference: Path, tmp_path: Path) -> None:
+    """Half of it is hardly ever found, half as much again nearly always."""
+    right = read(reference)
+    twins = [read(file(seed=seed).write(tmp_path / "new.exr")) for seed in range(20)]
+    told = statistical.check(twins[0], right, Settings())
+    change = told.numbers["smallest_change"]
+    assert f"{100 * change:.2g} % more or less light would have been seen" in told.message
+
+    def found(factor: float) -> int:
+        mutants = [brighter(twin, 1 + factor * change) for twin in twins]
+        return sum(statistical.check(mutant, right, Settings()).status is Status.FAIL for mutant in mutants)
+
+    assert found(0.5) <= 3
+    assert found(1.5) >= 17
+
+
+def test_noise_that_hides_everything_is_a_warning(reference: Path, tmp_path: Path) -> None:
+    black = file(seed=3, change=np.zeros_like)
+    black.integrator = "bdpt"
+    verdict = compare(black.write(tmp_path / "new.exr"), reference)
+    assert verdict.outcome is Outcome.FAIL
+    black.variances = {side: 1e6 * variance for side, variance in black.variances.items()}
+    verdict = compare(black.write(tmp_path / "new.exr"), reference)
+    assert gates(verdict)["statistics"] is Status.PASS
+    assert "so much noise is declared that only" in verdict.text()
+    assert verdict.as_dict()["warnings"]
 
 
 def excusing(*gates: str) -> Settings:

@@ -61,7 +61,7 @@ def write_strip(path: Path, verdict: Verdict) -> bool:
         return False
     assert verdict.pictures
     new, reference = verdict.pictures
-    path.write_bytes(strip(new, reference, exposure(reference.color)))
+    path.write_bytes(strip(new, None if verdict.problem else reference, exposure(reference.color)))
     return True
 
 
