@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from ajar_tools import __version__
 from ajar_tools.comparison import compare
 from ajar_tools.junit import annotation, junit, title
 from ajar_tools.picture import CannotCompareError
@@ -40,6 +41,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--junit", type=Path, metavar="FILE", help="write the verdict as JUnit XML")
     p.add_argument("--html", type=Path, metavar="FILE", help="write a self-contained report")
     p.add_argument("--github", action="store_true", help="print failures as annotations of GitHub Actions")
+    p.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     p.add_argument("-q", "--quiet", action="store_true", help="print nothing but failures")
     return p
 
