@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     fn status(seconds: f64, noise: Option<Noise>) -> Status {
-        Status { rounds: 8, samples: 64, elapsed: Duration::from_secs_f64(seconds), noise }
+        Status { rounds: 8, samples: 64, elapsed: Duration::from_secs_f64(seconds), noise, rejected: 0 }
     }
 
     #[test]
