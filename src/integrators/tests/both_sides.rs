@@ -142,7 +142,7 @@ fn count(world: &World, depth: usize) -> Count {
 
 #[test]
 fn paths_are_worth_the_same_from_both_sides() {
-    for scene in SCENES {
+    for scene in SCENES.iter().chain([&IMAGES]) {
         let world = (scene.world)();
         let count = count(&world, scene.depth);
         println!("{}: {count:?}", scene.name);

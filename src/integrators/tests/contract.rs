@@ -27,7 +27,10 @@ use ajar_render::{
     rng::{Purpose, Rng},
     sampler::Sequence,
 };
-use common::{scenes::SCENES, settings};
+use common::{
+    scenes::{IMAGES, SCENES},
+    settings,
+};
 use glam::DVec3;
 
 /// Paths in proportion to their contribution.
@@ -54,7 +57,7 @@ fn close(a: f64, b: f64) -> bool {
 #[test]
 fn proposals_can_be_read_backwards() {
     let (list, _) = mutations(&BTreeMap::new());
-    for scene in SCENES {
+    for scene in SCENES.iter().chain([&IMAGES]) {
         let world = (scene.world)();
         let (space, paths) = seeds(&world, scene.depth, 400);
         let (mut y, mut rng) = (Proposal::default(), Rng::new(3, Purpose::Test, 0, 0));
@@ -343,7 +346,7 @@ impl Visitor for Contributions<'_> {
 /// The shares of base and chains add up to 1 only if both compute the same C.
 #[test]
 fn paths_contribute_to_the_base_what_chains_think() {
-    for scene in SCENES {
+    for scene in SCENES.iter().chain([&IMAGES]) {
         let world = (scene.world)();
         let settings = settings(&world, 3, scene.depth, 1);
         let space = Space::new(&world, settings.window, scene.depth);

@@ -174,7 +174,4 @@ fn under_lights_without_extent() {
         b.light(kind, from, to);
         assert_same(name, b, 1);
     }
-    let mut b = stage();
-    b.light(LightKind::Directional { illuminance: 5.0, angle: 0.5 }, from, to);
-    assert_same("wide sun", b, 0);
 }

@@ -32,7 +32,6 @@ pub const SCENES: &[TestScene] = &[
     scene("thin lens", 5, thin_lens),
     scene("orthographic", 5, orthographic),
     scene("partial opacity", 5, partial_opacity),
-    IMAGES,
 ];
 
 /// A room with coloured walls, open to the camera, and a lamp under its ceiling.
