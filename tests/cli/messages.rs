@@ -12,7 +12,8 @@ fn messages_and_results_as_json() {
             .map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}")))
             .collect()
     };
-    let run = bench.run("render leaf.gltf --size 8x8 --rounds 3 --integrator path --log-format json -v").exits(0);
+    let run =
+        bench.run("render leaf.gltf --size 8x8 --rounds 3 --integrator path --log-format json -v").exits(0);
     let said = lines(&run.err);
     assert!(
         said.len() >= 2 && said.iter().all(|it| it["type"] == "message" && it["severity"] == "note"),
