@@ -4,6 +4,7 @@
 //! [`importers`].
 
 pub mod ajar;
+mod budget;
 mod files;
 pub mod gltf;
 mod guard;

@@ -5,6 +5,8 @@ use bytemuck::Pod;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 
+use crate::budget::Budget;
+
 /// Part of the binary chunk.
 #[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -18,13 +20,13 @@ pub(super) struct Range {
 /// The binary chunk, and how many bytes may still be copied from it.
 pub(super) struct Binary<'a> {
     pub bytes: &'a [u8],
-    pub budget: u64,
+    pub budget: Budget,
 }
 
 impl Binary<'_> {
     /// The items that `given` holds or points to.
     pub fn array<T: Pod + DeserializeOwned>(
-        &mut self,
+        &self,
         given: Value,
         element: &str,
     ) -> Result<Vec<T>, Diagnostic> {
@@ -50,9 +52,11 @@ impl Binary<'_> {
         let end = range.offset.checked_add(length).ok_or_else(beyond)?;
         let part = usize::try_from(range.offset).ok().zip(usize::try_from(end).ok());
         let part = part.and_then(|(start, end)| self.bytes.get(start..end)).ok_or_else(beyond)?;
-        self.budget = self.budget.checked_sub(length).ok_or_else(|| {
-            Diagnostic::error("needs more memory than the limit").because(Cause::Resource).element(element)
-        })?;
-        Ok(bytemuck::pod_collect_to_vec(part))
+        if !self.budget.take(length) {
+            let error = Diagnostic::error("needs more memory than the limit");
+            return Err(error.because(Cause::Resource).element(element));
+        }
+        let items = bytemuck::try_cast_slice(part).map(<[T]>::to_vec);
+        Ok(items.unwrap_or_else(|_| bytemuck::pod_collect_to_vec(part)))
     }
 }

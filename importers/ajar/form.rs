@@ -9,7 +9,7 @@ use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::{Map, Value, json};
 
 use super::{array::Binary, mesh};
-use crate::json::cost;
+use crate::{budget::Budget, json::cost};
 
 /// Version of the JSON, in its key `ajar`.
 pub(super) const VERSION: u64 = 1;
@@ -43,9 +43,9 @@ pub(super) fn scene(text: &[u8], bytes: &[u8], request: &ImportRequest) -> Resul
         }
         None => return Err(Diagnostic::error("is no Ajar scene: the key \"ajar\" is missing")),
     }
-    let mut binary = Binary { bytes, budget: request.memory_limit };
+    let binary = Binary { bytes, budget: Budget::new(request.memory_limit) };
     let mut imported = Imported::default();
-    let meshes = mesh::meshes(list(top.remove("meshes"), "meshes")?, &mut binary, &mut imported.diagnostics)?;
+    let meshes = mesh::meshes(list(top.remove("meshes"), "meshes")?, &binary, &mut imported.diagnostics)?;
     let mut nodes = completed(top.remove("nodes"), "nodes", &value(&Node::default())?)?;
     meshes.rename(&mut nodes)?;
     imported.render =
@@ -54,7 +54,7 @@ pub(super) fn scene(text: &[u8], bytes: &[u8], request: &ImportRequest) -> Resul
     imported.scene = Scene {
         nodes,
         meshes: meshes.scene,
-        images: images(top.remove("images"), &mut binary, request, &mut imported.files)?,
+        images: images(top.remove("images"), &binary, request, &mut imported.files)?,
         materials: completed(top.remove("materials"), "materials", &value(&Material::default())?)?,
         textures: completed(top.remove("textures"), "textures", &texture()?)?,
         lights: completed(
@@ -145,7 +145,7 @@ fn complete(given: &mut Value, default: &Value, element: &str) -> Result<(), Dia
 
 fn images(
     given: Option<Value>,
-    binary: &mut Binary,
+    binary: &Binary,
     request: &ImportRequest,
     files: &mut Vec<PathBuf>,
 ) -> Result<Arena<Image>, Diagnostic> {

@@ -3,6 +3,7 @@
 use ajar_scene::{Arena, Diagnostic, Id, Loss, Material, Mesh, Node};
 use bytemuck::Pod;
 use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
 
@@ -120,50 +121,57 @@ impl Default for SubdivisionForm {
     }
 }
 
-/// Reads the list of meshes; what is dropped goes to `diagnostics`.
+/// Reads the list of meshes, on all cores; what is dropped goes to `diagnostics`.
 pub(super) fn meshes(
     forms: Vec<Value>,
-    binary: &mut Binary,
+    binary: &Binary,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<Meshes, Diagnostic> {
+    let mesh = |(index, form): (usize, Value)| {
+        let element = format!("meshes[{index}]");
+        Reader { binary, element }.mesh(form)
+    };
+    let all: Vec<_> = forms.into_par_iter().enumerate().map(mesh).collect();
     let mut meshes = Meshes::default();
-    for (index, form) in forms.into_iter().enumerate() {
-        let mut reader = Reader { binary, element: format!("meshes[{index}]") };
+    for made in all {
+        let (made, dropped) = made?;
         let first = meshes.scene.len();
-        if form.get("faces").is_some() {
-            let (made, dropped) = reader.faces(form)?;
-            for mesh in made {
-                meshes.scene.push(mesh);
-            }
-            diagnostics.extend(dropped);
-        } else {
-            meshes.scene.push(reader.triangles(form)?);
+        for mesh in made {
+            meshes.scene.push(mesh);
         }
+        diagnostics.extend(dropped);
         meshes.became.push(first..meshes.scene.len());
     }
     Ok(meshes)
 }
 
+/// The meshes that one of the file becomes, and what was dropped.
+type Made = (Vec<Mesh>, Option<Diagnostic>);
+
 /// Reads one mesh.
-struct Reader<'a, 'b> {
-    binary: &'a mut Binary<'b>,
+struct Reader<'a> {
+    binary: &'a Binary<'a>,
     element: String,
 }
 
-impl Reader<'_, '_> {
-    fn array<T: Pod + DeserializeOwned>(&mut self, given: Value, key: &str) -> Result<Vec<T>, Diagnostic> {
+impl Reader<'_> {
+    fn mesh(&self, form: Value) -> Result<Made, Diagnostic> {
+        if form.get("faces").is_some() { self.faces(form) } else { Ok((vec![self.triangles(form)?], None)) }
+    }
+
+    fn array<T: Pod + DeserializeOwned>(&self, given: Value, key: &str) -> Result<Vec<T>, Diagnostic> {
         self.binary.array(given, &format!("{}.{key}", self.element))
     }
 
     fn optional<T: Pod + DeserializeOwned>(
-        &mut self,
+        &self,
         given: Option<Value>,
         key: &str,
     ) -> Result<Option<Vec<T>>, Diagnostic> {
         given.map(|given| self.array(given, key)).transpose()
     }
 
-    fn triangles(&mut self, form: Value) -> Result<Mesh, Diagnostic> {
+    fn triangles(&self, form: Value) -> Result<Mesh, Diagnostic> {
         let form: Triangles = read(form, &self.element)?;
         let mut uvs = Vec::with_capacity(form.uvs.len());
         for (set, given) in form.uvs.into_iter().enumerate() {
@@ -181,8 +189,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// The meshes that polygons become, and what was dropped.
-    fn faces(&mut self, form: Value) -> Result<(Vec<Mesh>, Option<Diagnostic>), Diagnostic> {
+    fn faces(&self, form: Value) -> Result<Made, Diagnostic> {
         let form: Faces = read(form, &self.element)?;
         let faces: Vec<u32> = self.array(form.faces, "faces")?;
         let mut polygons = Polygons {
@@ -215,8 +222,7 @@ impl Reader<'_, '_> {
             polygons.normals =
                 form.normals.map(|it| self.attribute::<Vec3>(it, &polygons, "normals")).transpose()?;
         }
-        let polygons =
-            polygons.refined(&mut self.binary.budget).map_err(|error| error.element(&self.element))?;
+        let polygons = polygons.refined(&self.binary.budget).map_err(|error| error.element(&self.element))?;
         let done = polygons.triangulated();
         Ok((done.meshes, dropped(done.degenerate, done.crossing, &self.element)))
     }
@@ -229,7 +235,7 @@ impl Reader<'_, '_> {
     }
 
     fn attribute<T: Pod + DeserializeOwned>(
-        &mut self,
+        &self,
         form: AttributeForm,
         polygons: &Polygons,
         key: &str,
@@ -241,13 +247,13 @@ impl Reader<'_, '_> {
             .map_err(|error| error.element(format!("{}.{key}", self.element)))
     }
 
-    fn subdivision(&mut self, form: SubdivisionForm, polygons: &Polygons) -> Result<Subdivision, Diagnostic> {
+    fn subdivision(&self, form: SubdivisionForm, polygons: &Polygons) -> Result<Subdivision, Diagnostic> {
         let place = format!("{}.subdivision", self.element);
         let wrong = |message: String| Diagnostic::error(message).element(&place);
         if form.levels > MOST_LEVELS {
             return Err(wrong(format!("{} levels are more than {MOST_LEVELS}", form.levels)));
         }
-        let mut given = |given, key: &str| self.optional(given, &format!("subdivision.{key}"));
+        let given = |given, key: &str| self.optional(given, &format!("subdivision.{key}"));
         let crease_sharpness = given(form.crease_sharpness, "crease_sharpness")?.unwrap_or_default();
         let position_sharpness = given(form.position_sharpness, "position_sharpness")?.unwrap_or_default();
         let creases: Vec<[u32; 2]> = self.optional(form.creases, "subdivision.creases")?.unwrap_or_default();

@@ -4,8 +4,8 @@ use std::{
     fmt,
     io::{self, Read, Write},
     process::{Child, Command, ExitStatus, Stdio},
-    sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
-    thread,
+    sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel},
+    thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
 
@@ -13,12 +13,10 @@ use ajar_scene::Cause;
 
 /// Bytes of messages after which a program is stopped.
 const MOST_MESSAGES: u64 = 16 << 20;
-/// Blocks that wait to be collected.
-const WAITING: usize = 16;
 /// Time between two looks at a program that has closed its streams.
 const LOOK: Duration = Duration::from_millis(2);
 /// Bytes that are read at once.
-const BLOCK: usize = 1 << 16;
+const BLOCK: usize = 1 << 20;
 
 /// What is run, and its limits.
 pub(super) struct Program {
@@ -66,12 +64,8 @@ impl fmt::Display for Failure {
     }
 }
 
-/// What the threads that read its streams tell.
-enum Event {
-    Output(Vec<u8>),
-    Message(Vec<u8>),
-    Closed,
-}
+/// What the threads that read its streams tell: that something came, or that it was too much.
+type Sign = Result<(), Failure>;
 
 impl Program {
     /// Runs it to its end.
@@ -83,11 +77,12 @@ impl Program {
             // A program that does not want its input is no failure.
             thread::spawn(move || drop(pipe.write_all(&input)));
         }
-        let (send, events) = sync_channel(WAITING);
-        read(child.stdout.take(), Event::Output, &send);
-        read(child.stderr.take(), Event::Message, &send);
-        let ended = self.collect(&events).and_then(|(output, messages)| {
+        let (send, signs) = channel();
+        let output = read(child.stdout.take(), self.most, send.clone());
+        let messages = read(child.stderr.take(), MOST_MESSAGES, send);
+        let ended = self.listen(&signs).and_then(|()| {
             let status = self.wait(&mut child)?;
+            let [output, messages] = [output, messages].map(|thread| thread.join().unwrap_or_default());
             Ok(End { status, output, messages })
         });
         if ended.is_err() {
@@ -108,28 +103,15 @@ impl Program {
         Err(Failure::Silence(self.silence))
     }
 
-    fn collect(&self, events: &Receiver<Event>) -> Result<(Vec<u8>, Vec<u8>), Failure> {
-        let (mut output, mut messages, mut open) = (Vec::new(), Vec::new(), 2);
-        while open > 0 {
-            match events.recv_timeout(self.silence) {
-                Ok(Event::Output(block)) => {
-                    output.extend(block);
-                    if output.len() as u64 > self.most {
-                        return Err(Failure::Size(self.most));
-                    }
-                }
-                Ok(Event::Message(block)) => {
-                    messages.extend(block);
-                    if messages.len() as u64 > MOST_MESSAGES {
-                        return Err(Failure::Size(MOST_MESSAGES));
-                    }
-                }
-                Ok(Event::Closed) => open -= 1,
+    /// Waits until both streams are closed.
+    fn listen(&self, signs: &Receiver<Sign>) -> Result<(), Failure> {
+        loop {
+            match signs.recv_timeout(self.silence) {
+                Ok(sign) => sign?,
                 Err(RecvTimeoutError::Timeout) => return Err(Failure::Silence(self.silence)),
-                Err(RecvTimeoutError::Disconnected) => break,
+                Err(RecvTimeoutError::Disconnected) => return Ok(()),
             }
         }
-        Ok((output, messages))
     }
 }
 
@@ -140,19 +122,24 @@ fn stop(child: &mut Child) {
     let _ = child.wait();
 }
 
-/// Reads a stream to its end in a thread of its own.
-fn read(pipe: Option<impl Read + Send + 'static>, event: fn(Vec<u8>) -> Event, events: &SyncSender<Event>) {
-    let events = events.clone();
+/// Reads a stream to its end, in a thread of its own, unless it has more than `most` bytes.
+fn read(pipe: Option<impl Read + Send + 'static>, most: u64, signs: Sender<Sign>) -> JoinHandle<Vec<u8>> {
     thread::spawn(move || {
-        let mut block = vec![0; BLOCK];
+        let (mut bytes, mut filled) = (Vec::new(), 0);
         if let Some(mut pipe) = pipe {
-            // What was read before an error tells more than the error.
-            while let Ok(count @ 1..) = pipe.read(&mut block) {
-                if events.send(event(block[..count].to_vec())).is_err() {
-                    return;
+            loop {
+                bytes.resize(filled + BLOCK, 0);
+                // What was read before an error tells more than the error.
+                let Ok(count @ 1..) = pipe.read(&mut bytes[filled..]) else { break };
+                filled += count;
+                let is_much = filled as u64 > most;
+                let sign = if is_much { Err(Failure::Size(most)) } else { Ok(()) };
+                if signs.send(sign).is_err() || is_much {
+                    break;
                 }
             }
         }
-        let _ = events.send(Event::Closed);
-    });
+        bytes.truncate(filled);
+        bytes
+    })
 }

@@ -21,6 +21,13 @@ pub(crate) struct Attribute<T> {
     pub indices: Vec<u32>,
 }
 
+impl<T: Copy> Attribute<T> {
+    /// The value that a corner has.
+    fn at(&self, corner: usize) -> T {
+        self.values[self.indices[corner] as usize]
+    }
+}
+
 /// How a mesh is subdivided; keys and defaults are those of `docs/ajar-scene.md`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Subdivision {
@@ -118,7 +125,7 @@ impl Polygons {
         }
         let index = |entry: u32| indices.as_ref().map_or(entry, |indices| indices[entry as usize]);
         let indices = match per {
-            Per::Corner => (0..count as u32).map(index).collect(),
+            Per::Corner => indices.unwrap_or_else(|| (0..count as u32).collect()),
             Per::Position => self.corners.iter().map(|&position| index(position)).collect(),
             Per::Face => {
                 let corners =

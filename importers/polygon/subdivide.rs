@@ -8,6 +8,7 @@ use super::{
     edges::{Edges, INFINITE, Topology},
     normals,
 };
+use crate::budget::Budget;
 
 /// How the boundary of the mesh behaves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
@@ -41,17 +42,17 @@ impl Polygons {
     /// The mesh refined, positions at the limit, with smooth normals. A mesh without subdivision is returned as it is.
     ///
     /// # Errors
-    /// The result needs more than `budget` bytes, which are counted down.
-    pub fn refined(mut self, budget: &mut u64) -> Result<Self, Diagnostic> {
+    /// The result needs more than is left of `budget`.
+    pub fn refined(mut self, budget: &Budget) -> Result<Self, Diagnostic> {
         let Some(subdivision) = self.subdivision.take() else { return Ok(self) };
         let quads =
             (self.corners.len() as u64).saturating_mul(4_u64.saturating_pow(subdivision.levels.max(1) - 1));
         let values = 2 + self.uvs.len() as u64 + u64::from(self.colors.is_some());
         // Corners, edges and values of each attribute while it is refined.
-        *budget = budget.checked_sub(quads.saturating_mul(80 * values)).ok_or_else(|| {
-            Diagnostic::error(format!("{quads} faces after subdivision need more memory than the limit"))
-                .because(Cause::Resource)
-        })?;
+        if !budget.take(quads.saturating_mul(80 * values)) {
+            let message = format!("{quads} faces after subdivision need more memory than the limit");
+            return Err(Diagnostic::error(message).because(Cause::Resource));
+        }
         let topology = Topology { first: self.first(), corners: std::mem::take(&mut self.corners) };
         let edges = Edges::of(&topology);
         let creases = subdivision.edge_sharpness(&edges);
@@ -218,7 +219,7 @@ mod tests {
 
     fn subdivided(mut mesh: Polygons, subdivision: Subdivision) -> Polygons {
         mesh.subdivision = Some(subdivision);
-        mesh.refined(&mut (1 << 30)).expect("fits")
+        mesh.refined(&Budget::new(1 << 30)).expect("fits")
     }
 
     fn levels(levels: u32) -> Subdivision {
@@ -328,7 +329,7 @@ mod tests {
     fn too_many_faces_are_an_error() {
         let mut mesh = grid(50);
         mesh.subdivision = Some(levels(6));
-        let error = mesh.refined(&mut (1 << 20)).expect_err("too large");
+        let error = mesh.refined(&Budget::new(1 << 20)).expect_err("too large");
         assert_eq!(error.cause, Cause::Resource);
     }
 }

@@ -1,18 +1,19 @@
 //! What pages ask for, done.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, time::Instant};
 
 use ajar_integrators::{Window, features::features};
 use ajar_live::server::Reply;
-use ajar_scene::{Cause, Diagnostic, Projection};
+use ajar_scene::{Diagnostic, Projection};
 use glam::DVec3;
 use serde_json::json;
 use toml::{Table, Value};
 
 use super::{
-    Phase, Watch,
+    Phase, View as Told, Watch,
     describe::{is_nameless, is_of_file},
     draft::{Draft, Kind},
+    layer,
     opened::Opened,
     page::{Request, View},
 };
@@ -21,7 +22,7 @@ use super::{
 const VIEW: &str = "view";
 
 impl Watch<'_> {
-    pub(super) fn answer(&mut self, request: Request, reply: &Reply) {
+    pub(super) fn answer(&mut self, request: Request, reply: &Reply, view: &mut dyn Told) {
         self.is_news = true;
         match request {
             Request::Stop {} if self.worker.is_some() => {
@@ -44,7 +45,7 @@ impl Watch<'_> {
                 self.edit(if show { "clay" } else { "clay off" }, |draft, _| draft.show_clay(show));
             }
             Request::Revert {} => self.edit("edits dropped", |draft, _| draft.clear()),
-            Request::Save {} => self.save(),
+            Request::Save {} => self.save(view),
         }
     }
 
@@ -55,6 +56,8 @@ impl Watch<'_> {
         change(&mut self.draft, opened);
         if self.draft != before {
             self.state.changed = vec![what.to_owned()];
+            (self.state.saved, self.state.saved_without) = (None, Vec::new());
+            self.gesture.step(what, Instant::now());
             self.outdate();
         }
     }
@@ -79,12 +82,21 @@ impl Watch<'_> {
         reply.send(answer.to_string());
     }
 
-    fn save(&mut self) {
-        match self.draft.save(&self.layer, self.subject.path()) {
-            Ok(()) => self.state.saved = Some(self.layer.display().to_string()),
-            Err(error) => {
-                self.state.errors = vec![Diagnostic::error(error.to_string()).because(Cause::System)];
+    fn save(&mut self, view: &mut dyn Told) {
+        let Some(opened) = &self.opened else { return };
+        let scene = self.subject.path();
+        let said = self.subject.said(&opened.camera.0.name);
+        match self.layer.save(scene, layer::text(&self.draft, scene, &said)) {
+            Ok(path) => {
+                self.state.saved = Some(path.display().to_string());
+                self.state.saved_without = said.not_in_layer(scene);
+                let mut note = Diagnostic::note("changes saved").in_file(path);
+                if !self.state.saved_without.is_empty() {
+                    note = note.hint(format!("it does not hold {}", self.state.saved_without.join(", ")));
+                }
+                view.say(&[note]);
             }
+            Err(error) => self.state.errors = vec![error],
         }
     }
 }

@@ -3,9 +3,10 @@
     cargo build --release
     .venv/bin/python tools/bench/usd.py target/release/ajar
 
-makes a binary stage of two million triangles with normals and texture coordinates, once with an attribute a point and
-once with one a corner, as many exporters write. It times a Python program that opens it and reads the same arrays, and
-`ajar inspect`, which imports it. Both take turns; the fastest of each counts.
+makes binary stages of two million triangles with normals, texture coordinates and a textured material: in four meshes
+with an attribute a point, then with one a corner, as many exporters write, and that in one mesh. It times a Python
+program that opens it and reads the same arrays, and `ajar inspect`, which imports it. Both take turns; the fastest of
+each counts.
 """
 
 import os
@@ -16,9 +17,10 @@ import time
 from pathlib import Path
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom, Vt
+from PIL import Image
+from pxr import Sdf, Usd, UsdGeom, UsdShade, Vt
 
-MESHES, SIDE, TURNS = 4, 500, 7
+TRIANGLES, TURNS = 2_000_000, 7
 
 READER = """
 import sys
@@ -35,26 +37,46 @@ print(total)
 """
 
 
-def grid():
+def grid(side):
     """Points, normals and coordinates of a wavy sheet, and its triangles."""
-    x, z = np.meshgrid(np.linspace(0, 1, SIDE + 1), np.linspace(0, 1, SIDE + 1))
+    x, z = np.meshgrid(np.linspace(0, 1, side + 1), np.linspace(0, 1, side + 1))
     points = np.stack([x, 0.05 * np.sin(20 * x) * np.cos(17 * z), z], axis=-1).reshape(-1, 3)
     slopes = np.stack([-np.cos(20 * x) * np.cos(17 * z), np.ones_like(x), 0.85 * np.sin(20 * x) * np.sin(17 * z)], -1)
     normals = (slopes / np.linalg.norm(slopes, axis=-1, keepdims=True)).reshape(-1, 3)
-    a = (np.arange(SIDE)[:, None] * (SIDE + 1) + np.arange(SIDE)).reshape(-1)
-    b, c, d = a + 1, a + SIDE + 1, a + SIDE + 2
+    a = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).reshape(-1)
+    b, c, d = a + 1, a + side + 1, a + side + 2
     triangles = np.concatenate([np.stack([a, c, b], -1), np.stack([b, c, d], -1)])
     return points, normals, np.stack([x, z], -1).reshape(-1, 2), triangles
 
 
-def write(path, interpolation):
-    """The stage."""
-    points, normals, uvs, triangles = (array.astype(kind) for array, kind in zip(grid(), "fffi"))
+def textured(stage):
+    """A material that reads the texture coordinates."""
+    material = UsdShade.Material.Define(stage, "/World/Paint")
+    shaders = {}
+    for name, kind in [("Surface", "UsdPreviewSurface"), ("Image", "UsdUVTexture"), ("St", "UsdPrimvarReader_float2")]:
+        shaders[name] = UsdShade.Shader.Define(stage, f"/World/Paint/{name}")
+        shaders[name].CreateIdAttr(kind)
+    surface, image, st = shaders.values()
+    st.CreateInput("varname", Sdf.ValueTypeNames.String).Set("st")
+    image.CreateInput("file", Sdf.ValueTypeNames.Asset).Set("./paint.png")
+    image.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(st.ConnectableAPI(), "result")
+    color = surface.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
+    color.ConnectToSource(image.ConnectableAPI(), "rgb")
+    material.CreateSurfaceOutput().ConnectToSource(surface.ConnectableAPI(), "surface")
+    return material
+
+
+def write(path, meshes, interpolation):
+    """The stage, and its image."""
+    side = int((TRIANGLES / meshes / 2) ** 0.5)
+    points, normals, uvs, triangles = (array.astype(kind) for array, kind in zip(grid(side), "fffi"))
     if interpolation == "faceVarying":
         normals, uvs = normals[triangles.reshape(-1)], uvs[triangles.reshape(-1)]
+    Image.new("RGB", (2, 2)).save(path.with_name("paint.png"))
     stage = Usd.Stage.CreateNew(str(path))
     UsdGeom.SetStageMetersPerUnit(stage, 1)
-    for index in range(MESHES):
+    material = textured(stage)
+    for index in range(meshes):
         mesh = UsdGeom.Mesh.Define(stage, f"/World/Sheet{index}")
         mesh.AddTranslateOp().Set((index, 0, 0))
         mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points + np.float32(index) * 1e-6))
@@ -65,6 +87,7 @@ def write(path, interpolation):
         mesh.CreateSubdivisionSchemeAttr("none")
         primvar = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, interpolation)
         primvar.Set(Vt.Vec2fArray.FromNumpy(uvs))
+        UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)
     stage.Save()
 
 
@@ -77,14 +100,14 @@ def seconds(command):
 
 def main(ajar):
     with tempfile.TemporaryDirectory() as folder:
-        for interpolation in ("vertex", "faceVarying"):
-            stage = Path(folder) / f"{interpolation}.usdc"
-            write(stage, interpolation)
+        for meshes, interpolation in [(4, "vertex"), (4, "faceVarying"), (1, "faceVarying")]:
+            stage = Path(folder) / f"{interpolation}-{meshes}.usdc"
+            write(stage, meshes, interpolation)
             commands = [sys.executable, "-c", READER, stage], [ajar, "inspect", stage]
             times = np.array([[seconds(command) for command in commands] for _ in range(TURNS)])
             alone, through = times.min(axis=0)
             print(
-                f"{interpolation}: {stage.stat().st_size / 1e6:.0f} MB, usd-core alone {alone:.2f} s, "
+                f"{stage.stem}: {stage.stat().st_size / 1e6:.0f} MB, usd-core alone {alone:.2f} s, "
                 f"through the importer {through:.2f} s, {through / alone:.2f} times"
             )
 

