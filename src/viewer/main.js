@@ -87,7 +87,9 @@ function begin(view) {
 
 function learnLink(is) {
   showLink(is);
-  if (is !== "open") forget();
+  if (is === "open") return;
+  document.body.dataset.phase = "offline";
+  forget();
 }
 
 function setExposure(stops) {

@@ -55,10 +55,10 @@ export class Panel {
     return [...colors.slice(0, 1), ...numbers, ...colors.slice(1)];
   }
 
-  #light({ name, table, key, strength, color }) {
+  #light({ name, table, key, strength, scale, color }) {
     const set = (key) => (value) => this.send({ do: "set", table, name, key, value });
     const ofAsset = table === "node";
-    const scaled = ofAsset ? ["light_scale", { value: 1 }, [0, 4]] : [key, { value: strength }, [0, Math.max(2 * strength, 1)]];
+    const scaled = ofAsset ? ["light_scale", { value: scale ?? 1 }, [0, 4]] : [key, { value: strength }, [0, Math.max(2 * strength, 1)]];
     return [numberRow(...scaled, set(scaled[0])), colorRow(ofAsset ? "light_color" : "color", { value: color }, set(ofAsset ? "light_color" : "color"))];
   }
 }

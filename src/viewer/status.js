@@ -33,7 +33,7 @@ export function showState(state) {
   const rounds = state.rounds ? `${state.samples} samples a pixel, ${noise}, ${duration(state.seconds)}${left}` : "no round finished yet";
   $("numbers").textContent = state.image === 0 ? "" : `${width}×${height}, ${rounds}`;
   $("changed").textContent = state.shown_for.length ? `changed: ${state.shown_for.join(", ")}` : "";
-  $("rejected").textContent = state.rejected > 0 ? `${state.rejected} contributions were not finite and are left out` : "";
+  $("rejected").textContent = state.rejected > 0 ? `${state.rejected} contributions were negative or not finite and are left out` : "";
   $("progress").value = state.phase === "done" ? 1 : state.done;
   const isRunning = state.phase === "rendering";
   $("run").textContent = isRunning ? "Stop" : "Continue";
