@@ -2,7 +2,7 @@
 
 use std::{
     path::{Path, PathBuf},
-    sync::atomic::{AtomicBool, Ordering},
+    sync::atomic::AtomicBool,
     time::{Duration, Instant},
 };
 
@@ -205,7 +205,7 @@ pub fn prepare_world(
 }
 
 /// State of a render after a round.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Status {
     /// Finished rounds.
     pub rounds: u64,
@@ -215,6 +215,8 @@ pub struct Status {
     pub elapsed: Duration,
     /// Noise as of the last look at it.
     pub noise: Option<Noise>,
+    /// Contributions left out because they were negative or not finite.
+    pub rejected: u64,
 }
 
 /// A finished or interrupted render.
@@ -239,6 +241,26 @@ pub struct Start {
     pub done: Option<(Film, Duration)>,
 }
 
+/// Rounds to go on from, and the time that they took.
+#[derive(Debug)]
+pub struct Leg {
+    film: Film,
+    before: Duration,
+    began: Instant,
+}
+
+impl Leg {
+    /// From these rounds on, or from nothing. What is to be prepared for it takes part of its time.
+    pub fn begin(world: &World, settings: &Settings, done: Option<(Film, Duration)>) -> Self {
+        let (began, window) = (Instant::now(), settings.window);
+        let (film, before) = done.unwrap_or_else(|| {
+            let brightness = ajar_integrators::brightness(world, settings.max_depth);
+            (Film::new(window.pixels(), brightness).with_blocks(window.width() as usize), Duration::ZERO)
+        });
+        Self { film, before, began }
+    }
+}
+
 /// Renders rounds until a rule holds or `cancel` is raised; the round in progress is then dropped. `each_round` sees the
 /// film after every round, and who can tell about it.
 pub fn render(
@@ -248,31 +270,40 @@ pub fn render(
     rules: &StopRules,
     start: Start,
     cancel: &AtomicBool,
+    each_round: impl FnMut(&Film, &Status, &dyn Rounds),
+) -> Rendered {
+    let leg = Leg::begin(world, settings, start.done);
+    let cx = Context { world, settings, cancel };
+    advance(&*integrator.prepare(cx), cx, rules, start.shard, leg, each_round)
+}
+
+/// The same with an integrator that is prepared.
+pub fn advance(
+    prepared: &dyn Rounds,
+    cx: Context<'_>,
+    rules: &StopRules,
+    shard: Shard,
+    leg: Leg,
     mut each_round: impl FnMut(&Film, &Status, &dyn Rounds),
 ) -> Rendered {
-    let began = Instant::now();
-    let window = settings.window;
-    let (mut film, before) = start.done.unwrap_or_else(|| {
-        let brightness = ajar_integrators::brightness(world, settings.max_depth);
-        (Film::new(window.pixels(), brightness).with_blocks(window.width() as usize), Duration::ZERO)
-    });
-    let prepared = integrator.prepare(Context { world, settings, cancel });
+    let Leg { mut film, before, began } = leg;
+    let settings = cx.settings;
     let mut status = look(&film, settings, before, None);
     let reason = loop {
         if let Some(reason) = rules.check(status.rounds, status.elapsed, status.noise) {
             break Some(reason);
         }
-        let Some(index) = start.shard.round(film.rounds()) else { break Some(Reason::Rounds) };
+        let Some(index) = shard.round(film.rounds()) else { break Some(Reason::Rounds) };
         let round = film.round();
         prepared.render(index, &round);
-        if cancel.load(Ordering::Relaxed) {
+        if cx.cancelled() {
             break None;
         }
         film.merge(&round, prepared.scale());
         status = look(&film, settings, before + began.elapsed(), status.noise);
-        each_round(&film, &status, &*prepared);
+        each_round(&film, &status, prepared);
     };
-    status.noise = noise(&film, window);
+    status.noise = noise(&film, settings.window);
     status.elapsed = before + began.elapsed();
     Rendered { film, status, reason, report: prepared.report() }
 }
@@ -281,7 +312,13 @@ pub fn render(
 fn look(film: &Film, settings: &Settings, elapsed: Duration, last: Option<Noise>) -> Status {
     let rounds = film.rounds();
     let noise = if is_noise_check(rounds) { noise(film, settings.window) } else { last };
-    Status { rounds, samples: rounds * u64::from(settings.samples_per_round), elapsed, noise }
+    Status {
+        rounds,
+        samples: rounds * u64::from(settings.samples_per_round),
+        elapsed,
+        noise,
+        rejected: film.rejected(),
+    }
 }
 
 /// Where results go: the EXR, and the PNG beside it.

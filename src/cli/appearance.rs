@@ -4,7 +4,10 @@ use ajar_output::ToneMap;
 use ajar_scene::{Diagnostic, OutputSettings};
 
 use super::job::wrong;
-use crate::image::{Aov, Form};
+use crate::{
+    image::{Aov, Form},
+    watch::Said,
+};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct Appearance {
@@ -24,6 +27,22 @@ pub(super) struct Appearance {
 }
 
 impl Appearance {
+    /// Adds what is said about the look of images.
+    pub fn say(&self, said: &mut Said) {
+        if let Some(names) = &self.aov {
+            said.say("output", "aov", names.clone());
+        }
+        if let Some(name) = &self.tone_map {
+            said.say("output", "tone_map", name.as_str());
+        }
+        if let Some(stops) = self.exposure {
+            said.say("output", "exposure", stops);
+        }
+        if self.float {
+            said.say("output", "float", true);
+        }
+    }
+
     /// The form of what a file's settings say something about.
     ///
     /// # Errors

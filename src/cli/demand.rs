@@ -10,7 +10,7 @@ use super::{
     job::wrong,
     metropolis::metropolis,
 };
-use crate::{plan::Plan, session};
+use crate::{plan::Plan, session, watch::Said};
 
 /// Samples a pixel where no stop rule is given.
 const DEFAULT_SPP: u32 = 64;
@@ -52,7 +52,7 @@ pub(super) struct Demand {
 /// When an image is done: the first to hold.
 #[derive(Clone, Debug, clap::Args)]
 struct Until {
-    /// Stop after N samples a pixel [default: 64 if there is no other stop rule]
+    /// Stop after N samples a pixel; without any stop rule, render stops after 64, watch at a noise of 1 %
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     spp: Option<u32>,
     /// Stop after N rounds
@@ -123,6 +123,37 @@ impl Demand {
         let metropolis = metropolis(render)?;
         let settings = Settings { seed, max_depth, samples_per_round, window, metropolis };
         Ok(Plan { integrator, size, settings, rules })
+    }
+
+    /// Adds what is said about the look of images; when they are done is none of it. The camera that is looked through has
+    /// this name.
+    pub fn say(&self, camera: &str, said: &mut Said) {
+        match &self.camera {
+            Some(_) if camera.is_empty() => said.unsaid.push("--camera".into()),
+            Some(_) => said.say("render", "camera", camera),
+            None => {}
+        }
+        if let Some(size) = self.size {
+            said.say("render", "size", size.map(i64::from).to_vec());
+        }
+        if let Some(name) = &self.integrator {
+            said.say("render", "integrator", name.as_str());
+        }
+        if let Some(seed) = self.seed {
+            match i64::try_from(seed) {
+                Ok(seed) => said.say("render", "seed", seed),
+                Err(_) => said.unsaid.push("--seed".into()),
+            }
+        }
+        if let Some(depth) = self.max_depth {
+            said.say("render", "max_depth", i64::from(depth));
+        }
+        if let Some(crop) = self.crop {
+            said.say("render", "crop", crop.to_vec());
+        }
+        if self.pixel_bounds.is_some() {
+            said.unsaid.push("--pixel-bounds".into());
+        }
     }
 
     fn window(&self, render: &RenderSettings, [w, h]: [u32; 2]) -> Result<Window, Diagnostic> {

@@ -43,6 +43,7 @@ fn execute(args: &Args, log: Format) -> Result<(), Vec<Diagnostic>> {
         samples: sum.film.rounds().saturating_mul(settings.samples_per_round.into()),
         elapsed: Duration::try_from_secs_f64(sum.seconds).unwrap_or_default(),
         noise: noise(&sum.film, settings.window),
+        rejected: sum.film.rejected(),
     };
     let told = sum.mutations_per_sample.map(|number| ("mutations_per_sample".into(), number));
     let report = Report { numbers: told.into_iter().collect(), ..Report::default() };

@@ -16,10 +16,10 @@ use super::{
     signals::Signals,
 };
 use crate::{
-    image::Destination,
+    image::{Destination, Form},
     plan::Plan,
     session::{self, Reading},
-    watch::{End, Options, Subject, Watch},
+    watch::{End, Options, Said, Subject, Watch},
 };
 
 /// Noise at which an image is done where nothing else is said.
@@ -83,14 +83,25 @@ impl Subject for Args {
         self.output.is_some() || self.exec.is_some()
     }
 
+    fn form(&self, file: &SceneFile) -> Result<Form, Diagnostic> {
+        self.appearance.form(&file.output)
+    }
+
     fn destination(&self, file: &SceneFile) -> Result<Destination, Diagnostic> {
-        let form = self.appearance.form(&file.output)?;
+        let form = self.form(file)?;
         let mut output = file.output.clone();
         if self.output.is_some() {
             (output.path, output.png) = (self.output.clone(), None);
         }
         let (exr, png) = session::output_paths(&self.input.file, &output);
         Ok(Destination { exr, png, form })
+    }
+
+    fn said(&self, camera: &str) -> Said {
+        let mut said = self.input.said();
+        self.demand.say(camera, &mut said);
+        self.appearance.say(&mut said);
+        said
     }
 
     fn memory_limit(&self) -> u64 {
@@ -115,11 +126,12 @@ fn watch(args: &Args, log: Format) -> Result<Exit, Diagnostic> {
     }
     let options = Options { poll: args.poll, tev, snapshots: args.snapshots.clone(), once: args.once };
     let watch = Watch::new(args, options).map_err(|e| failed("watch files", &e))?;
-    let server = if args.once { None } else { Some(page::open(&args.door, &watch, log)?) };
+    let server = if args.once { None } else { Some(page::open(&args.door, &args.input.file, &watch, log)?) };
     let url = server.as_ref().map(|server| server.url());
-    let mut block = Block::new(log, args.verbosity.least(), url, args.exec.as_deref());
+    let block = Block::new(log, args.verbosity.least(), url, args.exec.clone());
+    let mut block = block.map_err(|e| failed("start a thread for the command", &e))?;
     let end = watch.run(signals.stop(), &mut block);
-    block.end();
+    block.end(signals.stop());
     Ok(match end {
         End::Asked if args.once => Exit::Interrupted,
         End::Asked | End::Finished => Exit::Ok,

@@ -9,6 +9,7 @@ const KEYS = (act) => [
   ["t", "T", "next tone map", act.curve],
   ["l", "L", "false colour: stops from middle grey", act.falseColor],
   ["v", "V", "next of what can be shown: the image, albedo, normals, depth …", act.layer],
+  ["m", "M", "everything as if made of clay, or as it is", act.clay],
   ["f", "F", "fit the image", act.fit],
   ["1", "1", "a pixel for a pixel", act.actual],
   ["w", "W", "wipe between before and now", act.wipe],

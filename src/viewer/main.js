@@ -30,7 +30,7 @@ function hear(document) {
     showNotes(document.notes);
   } else if (document.type === "probe") {
     showProbe(document);
-    if (document.material && pointer.chosen(document.x, document.y)) panel.choose(document.material);
+    if (document.hit?.material && pointer.chosen(document.x, document.y)) panel.choose(document.hit.material);
   }
 }
 
@@ -141,6 +141,7 @@ const actions = {
   save,
   exposure: (by) => setExposure(by === 0 ? 0 : screen.view.exposure + by),
   curve: () => setCurve($("tonemap").options[($("tonemap").selectedIndex + 1) % $("tonemap").options.length].value),
+  clay: () => send({ do: "clay", show: !state.is_clay }),
   falseColor: () => setCurve(screen.view.curve === "false" ? "agx" : "false"),
   panel: () => document.body.classList.toggle("bare"),
   help: () => $("help").showModal(),
@@ -155,7 +156,7 @@ $("run").onclick = actions.run;
 $("restart").onclick = actions.restart;
 $("png").onclick = save;
 $("help-button").onclick = actions.help;
-for (const id of ["fit", "actual", "wipe", "swap", "difference"]) $(id).onclick = actions[id];
+for (const id of ["fit", "actual", "clay", "wipe", "swap", "difference"]) $(id).onclick = actions[id];
 $("camera-tool").onclick = () => pointer.choose("camera");
 $("region-tool").onclick = () => (state.phase !== "loading" && screen.view.region ? actions.whole() : pointer.choose("region"));
 $("exposure").oninput = (event) => setExposure(Number(event.target.value));

@@ -20,11 +20,13 @@ export function showState(state) {
   const noise = state.noise === null ? "noise not yet known" : `noise ${percent(state.noise)} (worst ${percent(state.worst_tile)})`;
   const left = state.seconds_left === null ? "" : `, about ${duration(state.seconds_left)} left`;
   const [width, height] = state.size;
-  $("numbers").textContent = state.image === 0 ? "" : `${width}×${height}, ${state.samples} samples a pixel, ${noise}, ${duration(state.seconds)}${left}`;
+  const rounds = state.rounds ? `${state.samples} samples a pixel, ${noise}, ${duration(state.seconds)}${left}` : "no round finished yet";
+  $("numbers").textContent = state.image === 0 ? "" : `${width}×${height}, ${rounds}`;
   $("changed").textContent = state.shown_for.length ? `changed: ${state.shown_for.join(", ")}` : "";
   $("progress").value = state.phase === "done" ? 1 : state.done;
   const isRunning = state.phase === "rendering";
   $("run").textContent = isRunning ? "Stop" : "Continue";
+  $("clay").classList.toggle("on", state.is_clay);
   $("run").disabled = !["rendering", "stopped", "done"].includes(state.phase);
   showErrors(state.errors);
   showEdits(state);
@@ -60,9 +62,10 @@ function showEdits({ edits, saved }) {
   $("saved").textContent = saved ? `Saved as ${saved}` : "";
 }
 
-export function showProbe({ x, y, value, error, object, material }) {
+export function showProbe({ x, y, value, error, hit }) {
   const number = (v) => (v === null ? "NaN" : Number(v).toPrecision(4)).padStart(10);
   const rows = ["R", "G", "B"].map((name, i) => `${name} ${number(value[i])}` + (error ? ` ± ${Number(error[i]).toPrecision(2)}` : ""));
-  $("probe").textContent = [`(${x}, ${y})`, ...rows, ...[object, material].filter(Boolean)].join("\n");
+  const found = hit ? [hit.object, hit.material, `${Number(hit.depth).toPrecision(4)} m away, normal ${hit.normal.map((n) => n.toFixed(2)).join(" ")}`] : [];
+  $("probe").textContent = [`(${x}, ${y})`, ...rows, ...found.filter(Boolean)].join("\n");
   $("probe").hidden = false;
 }

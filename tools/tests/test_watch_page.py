@@ -143,6 +143,8 @@ def test_the_pixel_under_the_pointer_is_told(bench: Bench) -> None:
     # The middle of an odd number of screen pixels is on either side.
     assert re.match(r"\((159|160), (99|100)\)", text)
     assert "±" in text
+    # The front of the box, three quarters of the way to where the camera looks.
+    assert re.search(r"4\.0\d+ m away, normal 0\.00 0\.00 1\.00", text)
 
 
 def test_a_broken_edit_shows_where_and_the_image_stays(bench: Bench) -> None:
@@ -242,6 +244,21 @@ def test_a_material_is_changed_and_the_change_saved_beside_the_scene(bench: Benc
     assert layer.startswith('extends = "scene.toml"')
     assert "base_color" in layer
     assert (bench.folder / "box.mtl").read_text() == asset
+
+
+def test_everything_is_clay_until_it_is_not(bench: Bench) -> None:
+    (bench.folder / "box.mtl").write_text(material("0.1 0.6 0.1"))
+    bench.changed(lambda: bench.scene.write_text(SCENE))
+    red, green, blue = bench.mean(MIDDLE)
+    assert green > 1.2 * max(red, blue)
+    bench.changed(lambda: bench.page.keyboard.press("m"))
+    red, green, blue = bench.mean(MIDDLE)
+    assert max(red, green, blue) - min(red, green, blue) < 3
+    # No file says it.
+    assert bench.page.inner_text("#edits") == "None."
+    bench.changed(lambda: bench.page.click("#clay"))
+    red, green, blue = bench.mean(MIDDLE)
+    assert green > 1.2 * max(red, blue)
 
 
 def test_what_cannot_be_is_taken_back(bench: Bench) -> None:
