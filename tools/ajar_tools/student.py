@@ -7,6 +7,7 @@ method of Lentz (Press et al., Numerical Recipes, §6.4).
 from __future__ import annotations
 
 import math
+from statistics import NormalDist
 
 import numpy as np
 
@@ -22,13 +23,19 @@ def two_sided_t(t: np.ndarray, freedom: np.ndarray) -> np.ndarray:
 
 
 def critical_t(probability: float, freedom: np.ndarray) -> np.ndarray:
-    """The |t| that |T| exceeds with this probability: `two_sided_t` inverted, by halving the interval of logarithms."""
-    low, high = np.full(freedom.shape, -7.0), np.full(freedom.shape, 120.0)
-    for _ in range(60):
+    """The |t| that |T| exceeds with this probability, to a thousandth: `two_sided_t` inverted by halving an interval.
+
+    It is never below the quantile of the normal distribution.
+    """
+    low = np.full(freedom.shape, -NormalDist().inv_cdf(probability / 2))
+    high = 1.25 * low
+    while (beyond := two_sided_t(high, freedom) > probability).any():
+        low, high = np.where(beyond, high, low), np.where(beyond, 1.25 * high, high)
+    for _ in range(8):
         middle = (low + high) / 2
-        beyond = two_sided_t(np.exp(middle), freedom) > probability
+        beyond = two_sided_t(middle, freedom) > probability
         low, high = np.where(beyond, middle, low), np.where(beyond, high, middle)
-    return np.asarray(np.exp(high))
+    return high
 
 
 def upper_f(ratio: float, above: float, below: float) -> float:

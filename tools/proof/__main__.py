@@ -1,7 +1,7 @@
 """Makes docs/compare-proof.md: what the comparison finds and misses, beside the rules of others.
 
 cargo build --release
-.venv/bin/python tools/proof             some 700 small renders, a quarter of an hour of CPU; kept in target/proof
+.venv/bin/python tools/proof             some 700 small renders, 45 minutes of CPU; kept in target/proof
 .venv/bin/python tools/proof --quick     few of them, to standard output
 
 Exit code 1: more false alarms than chance explains, or a mutant survived that must not.
