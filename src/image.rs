@@ -82,6 +82,30 @@ pub struct Destination {
     pub form: Form,
 }
 
+impl Destination {
+    /// Checks that no image takes the place of the other, or of a file that the scene was read from.
+    ///
+    /// # Errors
+    /// One does; of the cause [`Cause::Usage`].
+    pub fn check(&self, read: &[PathBuf]) -> Result<(), Diagnostic> {
+        let taken = |what: &str, path: &Path| {
+            let message = format!("the image would take the place of {what}");
+            Err(Diagnostic::error(message).because(Cause::Usage).in_file(path))
+        };
+        if self.exr == self.png {
+            return taken("its own preview", &self.exr);
+        }
+        for path in [&self.exr, &self.png] {
+            // What is not there can take no place.
+            let Ok(real) = path.canonicalize() else { continue };
+            if read.iter().any(|file| file.canonicalize().is_ok_and(|file| file == real)) {
+                return taken("a file of the scene", path);
+            }
+        }
+        Ok(())
+    }
+}
+
 /// What is written of a film.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Form {

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use ajar_integrators::{Integrator, Settings, stop::StopRules};
+use ajar_scene::{Cause, Diagnostic};
 
 use crate::session::Status;
 
@@ -17,6 +18,31 @@ pub struct Plan {
     pub settings: Settings,
     /// When to stop.
     pub rules: StopRules,
+}
+
+/// What a pixel takes at most, from the film to the files: sums and squares of three channels at 16 bytes, a round's at 8,
+/// what its eye rays meet, and the picture twice.
+const BYTES_A_PIXEL: u64 = 256;
+
+impl Plan {
+    /// Checks that the image takes no more than this much memory.
+    ///
+    /// # Errors
+    /// It does; of the cause [`Cause::Resource`], about the key `render.size`.
+    pub fn check_memory(&self, limit: u64) -> Result<(), Diagnostic> {
+        let window = self.settings.window;
+        let bytes = u64::from(window.width()) * u64::from(window.height()) * BYTES_A_PIXEL;
+        if bytes <= limit {
+            return Ok(());
+        }
+        let mib = |bytes: u64| bytes.div_ceil(1 << 20);
+        let [width, height] = [window.width(), window.height()];
+        let (needed, limit) = (mib(bytes), limit >> 20);
+        let why =
+            format!("{width}x{height} pixels take {needed} MiB, more than the memory limit of {limit} MiB");
+        let hint = "render a part of it, or allow more with --memory-limit";
+        Err(Diagnostic::error(why).because(Cause::Resource).element("render.size").hint(hint))
+    }
 }
 
 /// How much of the render is done, by the rule that is nearest to hold.

@@ -2,7 +2,7 @@
 
 use std::{
     path::{Path, PathBuf},
-    sync::atomic::{AtomicBool, Ordering},
+    sync::atomic::AtomicBool,
     time::{Duration, Instant},
 };
 
@@ -29,6 +29,8 @@ use crate::{kept::kept, shard::Shard};
 pub struct Loaded {
     /// The scene with defaults added.
     pub file: SceneFile,
+    /// What is said of these defaults.
+    pub added: Vec<Diagnostic>,
     /// Stable hash of the scene.
     pub hash: String,
 }
@@ -75,16 +77,16 @@ pub struct Reading<'a> {
 pub fn load(path: &Path, options: &LoadOptions<'_>) -> Result<Loaded, Vec<Diagnostic>> {
     let mut file = open(path, options)?;
     let hash = file.scene.content_hash();
-    complete(path, options, &mut file);
-    Ok(Loaded { file, hash })
+    let added = complete(path, options, &mut file);
+    Ok(Loaded { file, added, hash })
 }
 
-/// Adds a camera or light where there is none.
-pub fn complete(path: &Path, options: &LoadOptions<'_>, file: &mut SceneFile) {
+/// Adds a camera or light where there is none, and says so.
+pub fn complete(path: &Path, options: &LoadOptions<'_>, file: &mut SceneFile) -> Vec<Diagnostic> {
     let [width, height] = film_size(options.size, file, None).map(f64::from);
     let camera = file.scene.add_default_camera(width / height);
     let light = file.scene.add_default_light();
-    file.diagnostics.extend(about(path, camera.into_iter().chain(light)));
+    about(path, camera.into_iter().chain(light))
 }
 
 /// Reads and checks a file as it is.
@@ -205,7 +207,7 @@ pub fn prepare_world(
 }
 
 /// State of a render after a round.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Status {
     /// Finished rounds.
     pub rounds: u64,
@@ -215,6 +217,8 @@ pub struct Status {
     pub elapsed: Duration,
     /// Noise as of the last look at it.
     pub noise: Option<Noise>,
+    /// Contributions left out because they were negative or not finite.
+    pub rejected: u64,
 }
 
 /// A finished or interrupted render.
@@ -239,6 +243,26 @@ pub struct Start {
     pub done: Option<(Film, Duration)>,
 }
 
+/// Rounds to go on from, and the time that they took.
+#[derive(Debug)]
+pub struct Leg {
+    film: Film,
+    before: Duration,
+    began: Instant,
+}
+
+impl Leg {
+    /// From these rounds on, or from nothing. What is to be prepared for it takes part of its time.
+    pub fn begin(world: &World, settings: &Settings, done: Option<(Film, Duration)>) -> Self {
+        let (began, window) = (Instant::now(), settings.window);
+        let (film, before) = done.unwrap_or_else(|| {
+            let brightness = ajar_integrators::brightness(world, settings.max_depth);
+            (Film::new(window.pixels(), brightness).with_blocks(window.width() as usize), Duration::ZERO)
+        });
+        Self { film, before, began }
+    }
+}
+
 /// Renders rounds until a rule holds or `cancel` is raised; the round in progress is then dropped. `each_round` sees the
 /// film after every round, and who can tell about it.
 pub fn render(
@@ -248,31 +272,40 @@ pub fn render(
     rules: &StopRules,
     start: Start,
     cancel: &AtomicBool,
+    each_round: impl FnMut(&Film, &Status, &dyn Rounds),
+) -> Rendered {
+    let leg = Leg::begin(world, settings, start.done);
+    let cx = Context { world, settings, cancel };
+    advance(&*integrator.prepare(cx), cx, rules, start.shard, leg, each_round)
+}
+
+/// The same with an integrator that is prepared.
+pub fn advance(
+    prepared: &dyn Rounds,
+    cx: Context<'_>,
+    rules: &StopRules,
+    shard: Shard,
+    leg: Leg,
     mut each_round: impl FnMut(&Film, &Status, &dyn Rounds),
 ) -> Rendered {
-    let began = Instant::now();
-    let window = settings.window;
-    let (mut film, before) = start.done.unwrap_or_else(|| {
-        let brightness = ajar_integrators::brightness(world, settings.max_depth);
-        (Film::new(window.pixels(), brightness).with_blocks(window.width() as usize), Duration::ZERO)
-    });
-    let prepared = integrator.prepare(Context { world, settings, cancel });
+    let Leg { mut film, before, began } = leg;
+    let settings = cx.settings;
     let mut status = look(&film, settings, before, None);
     let reason = loop {
         if let Some(reason) = rules.check(status.rounds, status.elapsed, status.noise) {
             break Some(reason);
         }
-        let Some(index) = start.shard.round(film.rounds()) else { break Some(Reason::Rounds) };
+        let Some(index) = shard.round(film.rounds()) else { break Some(Reason::Rounds) };
         let round = film.round();
         prepared.render(index, &round);
-        if cancel.load(Ordering::Relaxed) {
+        if cx.cancelled() {
             break None;
         }
         film.merge(&round, prepared.scale());
         status = look(&film, settings, before + began.elapsed(), status.noise);
-        each_round(&film, &status, &*prepared);
+        each_round(&film, &status, prepared);
     };
-    status.noise = noise(&film, window);
+    status.noise = noise(&film, settings.window);
     status.elapsed = before + began.elapsed();
     Rendered { film, status, reason, report: prepared.report() }
 }
@@ -281,7 +314,13 @@ pub fn render(
 fn look(film: &Film, settings: &Settings, elapsed: Duration, last: Option<Noise>) -> Status {
     let rounds = film.rounds();
     let noise = if is_noise_check(rounds) { noise(film, settings.window) } else { last };
-    Status { rounds, samples: rounds * u64::from(settings.samples_per_round), elapsed, noise }
+    Status {
+        rounds,
+        samples: rounds * u64::from(settings.samples_per_round),
+        elapsed,
+        noise,
+        rejected: film.rejected(),
+    }
 }
 
 /// Where results go: the EXR, and the PNG beside it.

@@ -92,7 +92,7 @@ impl Context<'_> {
             Diagnostic::error(format!("needs more memory than the limit of {limit} bytes"))
                 .because(Cause::Resource)
                 .element(element)
-                .hint("raise the memory limit of the import if the file is to be trusted")
+                .hint("raise the memory limit, --memory-limit, if the file is to be trusted")
         })?;
         Ok(())
     }

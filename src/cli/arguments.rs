@@ -1,5 +1,7 @@
 //! Values of arguments.
 
+use std::path::PathBuf;
+
 pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let numbers = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     numbers
@@ -29,6 +31,18 @@ pub(super) fn parse_bounds(text: &str) -> Result<[u32; 4], String> {
 
 pub(super) fn parse_number(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "give a number".into())
+}
+
+pub(super) fn parse_noise(text: &str) -> Result<f64, String> {
+    let share = ajar_scene::parse_percent(text)?;
+    if share > 0.0 { Ok(share) } else { Err("give a share greater than 0".into()) }
+}
+
+/// The name of an image: what is no OpenEXR file must not be called otherwise, nor the preview beside it the same.
+pub(super) fn parse_exr(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_exr = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+    if is_exr { Ok(path) } else { Err("give a name that ends with .exr; the PNG goes beside it".into()) }
 }
 
 pub(super) fn parse_fps(text: &str) -> Result<f64, String> {
@@ -83,6 +97,16 @@ mod tests {
             assert!(parse_number(bad).is_err(), "{bad}");
         }
         assert!(parse_fps("0").is_err() && parse_fps("-1").is_err());
+    }
+
+    #[test]
+    fn noise_and_names() {
+        assert_eq!(parse_noise("2%"), Ok(0.02));
+        assert!(parse_noise("0").is_err() && parse_noise("0%").is_err() && parse_noise("nan").is_err());
+        assert_eq!(parse_exr("a/b.####.EXR"), Ok("a/b.####.EXR".into()));
+        for bad in ["a.png", "exr", ".exr", "a", ""] {
+            assert!(parse_exr(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

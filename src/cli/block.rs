@@ -3,7 +3,7 @@
 
 use std::{
     io,
-    process::{Child, Command, Stdio},
+    sync::atomic::AtomicBool,
     time::{Duration, Instant},
 };
 
@@ -12,6 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use super::{
+    after::After,
     log::Format,
     progress::{PLAIN_INTERVAL, duration},
 };
@@ -20,56 +21,55 @@ use crate::{
     watch::{Phase, State, View},
 };
 
-pub(super) struct Block<'a> {
+pub(super) struct Block {
     log: Format,
     least: Severity,
     /// The lines that are kept up to date, on a terminal.
     lines: Option<ProgressBar>,
     /// Link to the page.
     url: Option<String>,
-    /// What is run after each finished image.
-    command: Option<&'a str>,
-    /// It at work.
-    child: Option<Child>,
+    /// The command that runs after each finished image.
+    after: Option<After>,
     /// What was last said where there is no terminal.
     said: Option<(u64, Phase, Instant)>,
 }
 
-impl<'a> Block<'a> {
-    pub fn new(log: Format, least: Severity, url: Option<String>, command: Option<&'a str>) -> Self {
+impl Block {
+    /// `command` runs after each finished image.
+    ///
+    /// # Errors
+    /// The system refuses a thread.
+    pub fn new(
+        log: Format,
+        least: Severity,
+        url: Option<String>,
+        command: Option<String>,
+    ) -> io::Result<Self> {
         let lines = (log.interactive() && least < Severity::Error).then(|| {
             let style =
                 ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
             ProgressBar::new_spinner().with_style(style)
         });
-        let block = Self { log, least, lines, url, command, child: None, said: None };
+        let beside = lines.clone();
+        let complains = move |message: &str| complain(log, beside.as_ref(), message);
+        let after = command.map(|command| After::start(command, complains)).transpose()?;
+        let block = Self { log, least, lines, url, after, said: None };
         if let Some(url) = block.url.as_ref().filter(|_| block.lines.is_none() && least < Severity::Error) {
             log.progress(&format!("page {url}"), json!({ "page": url }));
         }
-        block
+        Ok(block)
     }
 
-    /// Leaves the terminal as it is found, once the last command has ended.
-    pub fn end(&mut self) {
-        self.wait();
+    /// Leaves the terminal as it is found, once the last command has ended; it is not waited for long once `stop` is raised.
+    pub fn end(self, stop: &AtomicBool) {
+        if let Some(after) = self.after
+            && !after.end(stop)
+        {
+            complain(self.log, self.lines.as_ref(), "the command still runs");
+        }
         if let Some(lines) = &self.lines {
             lines.finish_and_clear();
         }
-    }
-
-    /// Waits for the command of the image before: two at once could write the same files.
-    fn wait(&mut self) {
-        let Some(mut child) = self.child.take() else { return };
-        match child.wait() {
-            Ok(status) if status.success() => {}
-            Ok(status) => self.complain(&format!("the command ended with {status}")),
-            Err(error) => self.complain(&format!("the command cannot be waited for: {error}")),
-        }
-    }
-
-    fn complain(&self, message: &str) {
-        let warning = Diagnostic::warning(message).element("--exec");
-        self.aside(|| self.log.messages(&[warning], Severity::Warning));
     }
 
     fn aside(&self, write: impl FnOnce()) {
@@ -95,7 +95,7 @@ impl<'a> Block<'a> {
     }
 }
 
-impl View for Block<'_> {
+impl View for Block {
     fn say(&mut self, messages: &[Diagnostic]) {
         self.aside(|| self.log.messages(messages, self.least));
     }
@@ -113,21 +113,20 @@ impl View for Block<'_> {
             let note = Diagnostic::note("written").in_file(&to.exr);
             self.aside(|| self.log.messages(&[note], Severity::Note));
         }
-        if let Some(command) = self.command {
-            self.wait();
-            match execute(command, to) {
-                Ok(child) => self.child = Some(child),
-                Err(error) => self.complain(&format!("the command cannot be run: {error}")),
-            }
+        if let Some(after) = &self.after {
+            after.image(to);
         }
     }
 }
 
-/// Starts a command.
-fn execute(command: &str, image: &Destination) -> io::Result<Child> {
-    let mut shell = if cfg!(windows) { Command::new("cmd") } else { Command::new("sh") };
-    shell.arg(if cfg!(windows) { "/C" } else { "-c" }).arg(command);
-    shell.env("AJAR_EXR", &image.exr).env("AJAR_PNG", &image.png).stdin(Stdio::null()).spawn()
+/// Says what is wrong with the command, above the lines that are kept up to date.
+fn complain(log: Format, lines: Option<&ProgressBar>, message: &str) {
+    let warning = Diagnostic::warning(message).element("--exec");
+    let write = || log.messages(&[warning], Severity::Warning);
+    match lines {
+        Some(lines) => lines.suspend(write),
+        None => write(),
+    }
 }
 
 /// The lines that are kept up to date.
@@ -151,10 +150,21 @@ fn progress(state: &State) -> String {
         Phase::Stopped => "stopped",
     };
     let [width, height] = state.size;
+    if state.rounds == 0 {
+        let glance = match state.samples {
+            0 => String::new(),
+            samples => format!(", eye paths of {samples} samples a pixel meanwhile"),
+        };
+        return format!("{phase} {width}x{height}, no round finished yet{glance}");
+    }
     let noise = state.noise.map_or(String::new(), |noise| format!(", noise {:.1} %", noise * 100.0));
     let time =
         Duration::try_from_secs_f64(state.seconds).map_or(String::new(), |t| format!(", {}", duration(t)));
     let left = state.seconds_left.and_then(|left| Duration::try_from_secs_f64(left).ok());
     let left = left.map_or(String::new(), |left| format!(", about {} left", duration(left)));
-    format!("{phase} {width}x{height}, {} samples a pixel{noise}{time}{left}", state.samples)
+    let rejected = match state.rejected {
+        0 => String::new(),
+        rejected => format!(", {rejected} contributions that were not finite left out"),
+    };
+    format!("{phase} {width}x{height}, {} samples a pixel{noise}{time}{left}{rejected}", state.samples)
 }

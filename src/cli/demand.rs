@@ -3,14 +3,14 @@
 use std::time::Duration;
 
 use ajar_integrators::{Integrator, Settings, Window, integrators, stop::StopRules};
-use ajar_scene::{Diagnostic, RenderSettings, SceneFile, parse_duration, parse_percent};
+use ajar_scene::{Diagnostic, RenderSettings, SceneFile, parse_duration};
 
 use super::{
-    arguments::{parse_bounds, parse_crop, parse_size},
+    arguments::{parse_bounds, parse_crop, parse_noise, parse_size},
     job::wrong,
     metropolis::metropolis,
 };
-use crate::{plan::Plan, session};
+use crate::{plan::Plan, session, watch::Said};
 
 /// Samples a pixel where no stop rule is given.
 const DEFAULT_SPP: u32 = 64;
@@ -19,7 +19,7 @@ const DEFAULT_DEPTH: u32 = 16;
 /// Fewest rounds that `--spp` is spread over, where it is enough for them: their spread is the noise estimate.
 const ROUNDS_OF_SPP: u32 = 8;
 
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Clone, Debug, Default, clap::Args)]
 pub(super) struct Demand {
     /// Camera to look through [default: the first]
     #[arg(long, value_name = "NAME")]
@@ -27,7 +27,8 @@ pub(super) struct Demand {
     /// Film size in pixels [default: 1280 wide, in the shape of the camera, else 1280x720]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
-    /// How to render: ajar, mlt, bdpt or path [default: ajar]
+    /// How to render: path for light that comes directly, bdpt for caustics and lamps behind glass, mlt for light on hard
+    /// ways, ajar for all of these [default: ajar]
     #[arg(long, value_name = "NAME")]
     integrator: Option<String>,
     /// Key of all random numbers
@@ -50,19 +51,20 @@ pub(super) struct Demand {
 }
 
 /// When an image is done: the first to hold.
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Clone, Debug, Default, clap::Args)]
 struct Until {
-    /// Stop after N samples a pixel [default: 64 if there is no other stop rule]
+    /// Stop after N samples a pixel, rounded up to whole rounds; without any stop rule, render stops after 64, watch at a
+    /// noise of 1 %
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     spp: Option<u32>,
     /// Stop after N rounds
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     rounds: Option<u64>,
-    /// Stop after a time: 90s, 10m, 2h
+    /// Stop with the round in which this time ends: 90s, 10m, 2h
     #[arg(long, value_name = "TIME", value_parser = parse_duration)]
     time: Option<Duration>,
     /// Stop when the noise of the typical pixel is this low: 2%
-    #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
+    #[arg(long, value_name = "PERCENT", value_parser = parse_noise)]
     noise: Option<f64>,
 }
 
@@ -109,12 +111,13 @@ impl Demand {
     pub fn plan(&self, file: &SceneFile, kept: Option<u32>) -> Result<Plan, Diagnostic> {
         let render = &file.render;
         let name = self.integrator.as_deref().or(render.integrator.as_deref()).unwrap_or("ajar");
-        let integrator = find_integrator(name)?;
+        let integrator = find_integrator(name).map_err(|d| of_file(&self.integrator, "integrator", d))?;
         let size = session::film_size(self.size, file, self.camera.as_deref());
         let max_depth = self.max_depth.or(render.max_depth).unwrap_or(DEFAULT_DEPTH) as usize;
         if max_depth > integrator.max_depth() {
             let most = integrator.max_depth();
-            return Err(wrong(format!("max_depth {max_depth} is more than {name} can build, {most}")));
+            let wrong = wrong(format!("max_depth {max_depth} is more than {name} can build, {most}"));
+            return Err(of_file(&self.max_depth, "max_depth", wrong));
         }
         let (rules, samples_per_round) =
             stop_rules(self.until.over(render), integrator.samples_per_round(), kept);
@@ -125,9 +128,43 @@ impl Demand {
         Ok(Plan { integrator, size, settings, rules })
     }
 
+    /// Adds what is said about the look of images; when they are done is none of it. The camera that is looked through has
+    /// this name.
+    pub fn say(&self, camera: &str, said: &mut Said) {
+        match &self.camera {
+            Some(_) if camera.is_empty() => said.unsaid.push("--camera".into()),
+            Some(_) => said.say("render", "camera", camera),
+            None => {}
+        }
+        if let Some(size) = self.size {
+            said.say("render", "size", size.map(i64::from).to_vec());
+        }
+        if let Some(name) = &self.integrator {
+            said.say("render", "integrator", name.as_str());
+        }
+        if let Some(seed) = self.seed {
+            match i64::try_from(seed) {
+                Ok(seed) => said.say("render", "seed", seed),
+                Err(_) => said.unsaid.push("--seed".into()),
+            }
+        }
+        if let Some(depth) = self.max_depth {
+            said.say("render", "max_depth", i64::from(depth));
+        }
+        if let Some(crop) = self.crop {
+            said.say("render", "crop", crop.to_vec());
+        }
+        if self.pixel_bounds.is_some() {
+            said.unsaid.push("--pixel-bounds".into());
+        }
+    }
+
     fn window(&self, render: &RenderSettings, [w, h]: [u32; 2]) -> Result<Window, Diagnostic> {
         let window = match (self.pixel_bounds, self.crop.or(render.crop)) {
-            (Some([x0, x1, y0, y1]), _) => Window { x0, y0, x1: x1.min(w), y1: y1.min(h) },
+            (Some([_, x1, _, y1]), _) if x1 > w || y1 > h => {
+                return Err(wrong(format!("the pixels end at {x1}, {y1}, the image at {w}, {h}")));
+            }
+            (Some([x0, x1, y0, y1]), _) => Window { x0, y0, x1, y1 },
             (None, Some([x0, x1, y0, y1])) => {
                 let at = |fraction: f64, n: u32| (fraction * f64::from(n)).round() as u32;
                 Window { x0: at(x0, w), y0: at(y0, h), x1: at(x1, w).min(w), y1: at(y1, h).min(h) }
@@ -140,6 +177,11 @@ impl Demand {
             Err(wrong("the part to render holds no pixel"))
         }
     }
+}
+
+/// A complaint about a value that is `given` on the command line, or is that of the file under this key of `[render]`.
+fn of_file<T>(given: &Option<T>, key: &str, complaint: Diagnostic) -> Diagnostic {
+    if given.is_some() { complaint } else { complaint.element(format!("render.{key}")) }
 }
 
 fn find_integrator(name: &str) -> Result<&'static dyn Integrator, Diagnostic> {

@@ -2,10 +2,14 @@
 
 use std::path::PathBuf;
 
-use ajar_scene::{Choice, Diagnostic, Moment, SceneFile, Severity};
+use ajar_scene::{Choice, Diagnostic, Moment, Overrides, SceneFile, Severity};
+use toml::Table;
 
 use super::arguments::{parse_bytes, parse_fps, parse_number};
-use crate::session::{self, LoadOptions, Loaded, Reading};
+use crate::{
+    session::{self, LoadOptions, Loaded, Reading},
+    watch::Said,
+};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct Input {
@@ -72,7 +76,8 @@ impl Input {
     /// Adds the camera or light that the file lacks.
     pub fn complete(&self, size: Option<[u32; 2]>, file: &mut SceneFile) {
         let choice = self.chosen.choice();
-        session::complete(&self.file, &self.options(size, &choice), file);
+        let added = session::complete(&self.file, &self.options(size, &choice), file);
+        file.diagnostics.extend(added);
     }
 
     fn options<'a>(&'a self, size: Option<[u32; 2]>, choice: &'a Choice) -> LoadOptions<'a> {
@@ -90,6 +95,19 @@ impl Input {
     pub fn frame(&self) -> Option<i32> {
         let frame = self.chosen.frame?;
         (frame.fract() == 0.0 && frame.abs() <= f64::from(i32::MAX)).then_some(frame as i32)
+    }
+
+    /// What is said about the look of the scene.
+    pub fn said(&self) -> Said {
+        let Chosen { variant, frame, at, fps } = &self.chosen;
+        let mut import = Table::new();
+        if !variant.is_empty() {
+            import.insert("variant".into(), variant.clone().into());
+        }
+        let numbers = [("frame", frame), ("time", at), ("fps", fps)];
+        import.extend(numbers.into_iter().filter_map(|(key, n)| Some((key.to_owned(), (*n)?.into()))));
+        let unsaid = if self.allow.is_empty() { Vec::new() } else { vec!["--allow".to_owned()] };
+        Said { changes: Overrides::tables(&self.set), import, unsaid }
     }
 
     /// The least severity that makes a file unfit.

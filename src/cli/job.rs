@@ -2,7 +2,7 @@
 
 use ajar_integrators::{Integrator, Settings, Window, stop::StopRules};
 use ajar_output::frame_path;
-use ajar_scene::{Cause, Diagnostic, OutputSettings};
+use ajar_scene::{Cause, Diagnostic, OutputSettings, Setting};
 
 use super::{frames, render::Args};
 use crate::{
@@ -29,13 +29,17 @@ impl Job {
     /// Puts together what is asked for. A render that goes on keeps the rounds of `saved`.
     ///
     /// # Errors
-    /// It cannot be done; of the cause [`Cause::Usage`].
+    /// It cannot be done, or takes too much memory.
     pub fn new(args: &Args, loaded: &Loaded, saved: Option<&Saved>) -> Result<Self, Diagnostic> {
         let kept = saved.map(|saved| saved.subject.samples_per_round);
-        let Plan { integrator, size, settings, rules } = args.demand.plan(&loaded.file, kept)?;
+        let blame = |complaint| Setting::blame(&loaded.file.settings, complaint);
+        let plan = args.demand.plan(&loaded.file, kept).map_err(blame)?;
+        plan.check_memory(args.input.memory_limit).map_err(blame)?;
+        let Plan { integrator, size, settings, rules } = plan;
         let shard = args.checkpoints.shard.unwrap_or(Shard::WHOLE);
         let rules = if shard.is_whole() { rules } else { share(rules, shard)? };
-        let destination = destination(args, &loaded.file.output)?;
+        let destination = destination(args, &loaded.file.output).map_err(blame)?;
+        destination.check(&loaded.file.files)?;
         args.checkpoints.check(&destination)?;
         Ok(Self { integrator, size, settings, shard, rules, destination })
     }

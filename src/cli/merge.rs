@@ -5,7 +5,7 @@ use std::{path::PathBuf, time::Duration};
 use ajar_integrators::{Report, stats::noise};
 use ajar_scene::{Diagnostic, Severity};
 
-use super::{Exit, checkpoints::check_names, log::Format, print, results};
+use super::{Exit, arguments::parse_exr, checkpoints::check_names, log::Format, print, results};
 use crate::{
     image::{Destination, Run},
     merge::merge,
@@ -19,7 +19,7 @@ pub(super) struct Args {
     #[arg(required = true)]
     parts: Vec<PathBuf>,
     /// Image to write, in the form asked for when the parts were rendered; a PNG preview goes beside it
-    #[arg(short, long, value_name = "OUT.exr")]
+    #[arg(short, long, value_name = "OUT.exr", value_parser = parse_exr)]
     output: PathBuf,
 }
 
@@ -43,6 +43,7 @@ fn execute(args: &Args, log: Format) -> Result<(), Vec<Diagnostic>> {
         samples: sum.film.rounds().saturating_mul(settings.samples_per_round.into()),
         elapsed: Duration::try_from_secs_f64(sum.seconds).unwrap_or_default(),
         noise: noise(&sum.film, settings.window),
+        rejected: sum.film.rejected(),
     };
     let told = sum.mutations_per_sample.map(|number| ("mutations_per_sample".into(), number));
     let report = Report { numbers: told.into_iter().collect(), ..Report::default() };

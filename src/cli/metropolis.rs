@@ -15,7 +15,7 @@ use super::job::wrong;
 pub(super) fn metropolis(render: &RenderSettings) -> Result<Metropolis, Diagnostic> {
     let known: Vec<_> = mutations::names().collect();
     if let Some(name) = render.mutations.keys().find(|name| !known.contains(&name.as_str())) {
-        return Err(unknown("mutation", name, &known, "mutations"));
+        return Err(unknown("mutation", name, &known, &format!("mutations.{name}")));
     }
     if known.iter().all(|name| render.mutations.get(*name) == Some(&0.0)) {
         return Err(wrong("all mutations are switched off").element("render.mutations"));

@@ -1,5 +1,6 @@
 //! The command line: one file a command. Exit codes as in [`Exit`].
 
+mod after;
 mod appearance;
 mod arguments;
 mod block;

@@ -1,9 +1,9 @@
 //! The page of `ajar watch`: where it is and who may see it.
 
 use std::{
-    io,
+    fs, io,
     net::{IpAddr, Ipv4Addr, SocketAddr},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Command, Stdio},
 };
 
@@ -23,7 +23,7 @@ const PAGES: usize = 16;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct Door {
-    /// Port of the page [default: 7347, or any that is free]
+    /// Port of the page [default: that of last time, 7347, or any that is free]
     #[arg(long, value_name = "N")]
     port: Option<u16>,
     /// Open the page in the browser
@@ -38,7 +38,7 @@ pub(super) struct Door {
 ///
 /// # Errors
 /// The address is taken or not of this machine.
-pub(super) fn open(door: &Door, watch: &Watch<'_>, log: Format) -> Result<Server, Diagnostic> {
+pub(super) fn open(door: &Door, scene: &Path, watch: &Watch<'_>, log: Format) -> Result<Server, Diagnostic> {
     let ip = door.listen.unwrap_or(Ipv4Addr::LOCALHOST.into());
     if !ip.is_loopback() {
         let warning =
@@ -46,7 +46,9 @@ pub(super) fn open(door: &Door, watch: &Watch<'_>, log: Format) -> Result<Server
         let hint = "the link is not encrypted on its way; on a network you do not trust, tunnel to 127.0.0.1 instead";
         log.messages(&[Diagnostic::warning(warning).hint(hint)], Severity::Warning);
     }
-    let token = secret().map_err(|e| refused("make a secret for the link of the page", &e))?;
+    let memory = memory(scene);
+    let token =
+        secret(memory.as_deref()).map_err(|e| refused("make a secret for the link of the page", &e))?;
     let (stage, program) = watch.for_pages();
     let start = |port| {
         let options = Options { address: SocketAddr::new(ip, port), token: token.clone(), pages: PAGES };
@@ -54,7 +56,7 @@ pub(super) fn open(door: &Door, watch: &Watch<'_>, log: Format) -> Result<Server
     };
     let server = match door.port {
         Some(port) => start(port),
-        None => start(PORT).or_else(|_| start(0)),
+        None => any(start, memory.map(|file| file.with_extension("port")).as_deref()),
     };
     let server = server.map_err(|e| refused(&format!("serve the page at {ip}"), &e))?;
     if door.open && !browse(&server.url()) {
@@ -68,14 +70,33 @@ fn refused(what: &str, error: &io::Error) -> Diagnostic {
     Diagnostic::error(format!("cannot {what}: {error}")).because(Cause::System)
 }
 
-/// The secret in the link, the same as last time where it can be kept: pages that are open find the program again.
-fn secret() -> io::Result<String> {
+/// The file that keeps the secret for a scene, so that pages which are open find the program again, and only theirs.
+fn memory(scene: &Path) -> Option<PathBuf> {
     let folder = |name: &str| std::env::var_os(name).filter(|it| !it.is_empty()).map(PathBuf::from);
-    let state = folder("XDG_STATE_HOME").or_else(|| Some(folder("HOME")?.join(".local/state")));
-    match state.map(|folder| token::kept(&folder.join("ajar/watch-token"))) {
+    let state = folder("XDG_STATE_HOME").or_else(|| Some(folder("HOME")?.join(".local/state")))?;
+    let path = scene.canonicalize().or_else(|_| std::path::absolute(scene)).ok()?;
+    let name = blake3::hash(path.as_os_str().as_encoded_bytes()).to_hex();
+    Some(state.join("ajar/watch").join(&name[..16]))
+}
+
+/// The secret in the link, the same as last time where it can be kept.
+fn secret(memory: Option<&Path>) -> io::Result<String> {
+    match memory.map(token::kept) {
         Some(Ok(token)) => Ok(token),
         _ => token::new(),
     }
+}
+
+/// Starts at the port of last time, which `memory` holds, else at the usual one, else at any.
+fn any(start: impl Fn(u16) -> io::Result<Server>, memory: Option<&Path>) -> io::Result<Server> {
+    let last = memory.and_then(|file| fs::read_to_string(file).ok()?.trim().parse().ok());
+    let known = last.into_iter().chain([PORT]);
+    let server = known.map(&start).find_map(Result::ok).map_or_else(|| start(0), Ok)?;
+    if let Some(file) = memory {
+        // It is a convenience.
+        let _ = fs::write(file, server.address().port().to_string());
+    }
+    Ok(server)
 }
 
 /// Opens the link in the browser of the desktop.

@@ -30,6 +30,7 @@ impl Progress {
             if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}") {
                 bar.set_style(style.progress_chars("━╸ "));
             }
+            bar.set_message("getting ready for the first round");
             bar
         });
         Self { bar, last: Instant::now(), quiet, log }
@@ -88,5 +89,70 @@ pub(super) fn duration(time: Duration) -> String {
         10..120 => format!("{seconds} s"),
         120..7200 => format!("{} min {} s", seconds / 60, seconds % 60),
         _ => format!("{} h {} min", seconds / 3600, seconds / 60 % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ajar_integrators::stats::Noise;
+
+    use super::*;
+
+    fn status(seconds: f64, noise: Option<Noise>) -> Status {
+        Status { rounds: 8, samples: 64, elapsed: Duration::from_secs_f64(seconds), noise, rejected: 0 }
+    }
+
+    #[test]
+    fn durations_are_told_in_two_units_at_most() {
+        for (seconds, text) in [
+            (0.0, "0.0 s"),
+            (9.94, "9.9 s"),
+            (10.0, "10 s"),
+            (119.9, "119 s"),
+            (120.0, "2 min 0 s"),
+            (200.0, "3 min 20 s"),
+            (7199.0, "119 min 59 s"),
+            (7200.0, "2 h 0 min"),
+            (7500.0, "2 h 5 min"),
+        ] {
+            assert_eq!(duration(Duration::from_secs_f64(seconds)), text, "{seconds}");
+        }
+    }
+
+    #[test]
+    fn what_is_left_takes_as_long_as_what_is_done() {
+        let left = |done| time_left(&status(10.0, None), done).map(|left| left.as_secs_f64());
+        for (done, expected) in [(0.5, 10.0), (0.2, 40.0), (0.8, 2.5)] {
+            assert!((left(done).unwrap() - expected).abs() < 1e-6, "{done}: {:?}", left(done));
+        }
+        // Nothing is left, or nobody can tell.
+        for done in [0.0, 1.0, f64::NAN, f64::MIN_POSITIVE] {
+            assert_eq!(left(done), None, "{done}");
+        }
+    }
+
+    #[test]
+    fn a_line_says_how_far_it_is() {
+        let noise = Noise { typical: 0.021, worst_tile: 0.05 };
+        assert_eq!(
+            describe(&status(10.0, Some(noise)), 0.2),
+            "round 8, 64 samples a pixel, noise 2.1 % (worst tile 5 %), about 40 s left"
+        );
+        assert_eq!(describe(&status(10.0, None), 0.0), "round 8, 64 samples a pixel, noise not yet known");
+        let numbers = numbers(&status(10.0, Some(noise)), 0.2);
+        assert_eq!((&numbers["rounds"], &numbers["seconds_left"]), (&json!(8), &json!(40.0)));
+        assert_eq!(numbers["noise"], json!(0.021));
+    }
+
+    #[test]
+    fn the_rule_nearest_to_hold_says_how_much_is_done() {
+        let rules = StopRules { rounds: Some(64), time: Some(Duration::from_secs(100)), noise: Some(0.02) };
+        let done = |seconds, typical| {
+            let noise = Some(Noise { typical, worst_tile: typical });
+            fraction(&status(seconds, noise), &rules)
+        };
+        // Eight of 64 rounds; 60 of 100 seconds; half the noise takes four times the work.
+        assert_eq!([done(1.0, 1.0), done(60.0, 1.0), done(1.0, 0.04)], [0.125, 0.6, 0.25]);
+        assert_eq!(done(1.0, 0.01), 1.0);
     }
 }

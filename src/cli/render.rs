@@ -17,6 +17,7 @@ use glam::DAffine3;
 use super::{
     Exit,
     appearance::Appearance,
+    arguments::parse_exr,
     checkpoints::Checkpoints,
     demand::Demand,
     frames::{self, Frames, parse_frames},
@@ -44,7 +45,7 @@ pub(super) struct Args {
           conflicts_with_all = ["frame", "at", "checkpoint", "resume", "shard"])]
     pub frames: Option<Frames>,
     /// Image to write; a PNG preview goes beside it [default: <name>.exr in the current folder]
-    #[arg(short, long, value_name = "OUT.exr")]
+    #[arg(short, long, value_name = "OUT.exr", value_parser = parse_exr)]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub demand: Demand,
@@ -152,8 +153,11 @@ impl Ready {
         let saved = args.checkpoints.open().map_err(|d| vec![d])?;
         let loaded = args.input.load(args.demand.size)?;
         let job = Job::new(args, &loaded, saved.as_ref()).map_err(|d| vec![d])?;
-        let Loaded { file, hash: scene_hash } = loaded;
+        let Loaded { file, added, hash: scene_hash } = loaded;
         log.messages(&file.diagnostics, args.verbosity.least());
+        if !args.verbosity.quiet {
+            log.messages(&added, Severity::Note);
+        }
         let name = args.demand.camera.as_deref().or(file.render.camera.as_deref());
         let id = session::choose_camera(&file.scene, name).map_err(|d| vec![d])?;
         let camera = (file.scene.cameras[id.0].clone(), id.1);

@@ -1,8 +1,8 @@
 //! `ajar validate`.
 
-use ajar_scene::{Diagnostic, Severity};
+use ajar_scene::{Diagnostic, Setting, Severity};
 
-use super::{Exit, input::Input, log::Format, print};
+use super::{Exit, appearance::Appearance, demand::Demand, input::Input, log::Format, print};
 use crate::session::{self, Loaded};
 
 /// Film that the scene is prepared for; no pixel of it is rendered.
@@ -26,11 +26,17 @@ pub(super) fn run(Args { input }: &Args, log: Format) -> Exit {
 
 /// All that is said on the way to rendering.
 fn check(input: &Input) -> Vec<Diagnostic> {
-    let Loaded { file, .. } = match input.load(Some(FILM)) {
+    let Loaded { file, added, .. } = match input.load(None) {
         Ok(loaded) => loaded,
         Err(diagnostics) => return diagnostics,
     };
-    let mut diagnostics = file.diagnostics;
+    let mut diagnostics = file.diagnostics.clone();
+    diagnostics.extend(added);
+    let planned = Demand::default().plan(&file, None).and_then(|plan| plan.check_memory(input.memory_limit));
+    let formed = Appearance::default().form(&file.output);
+    let complaints = [planned.err(), formed.err()].into_iter().flatten();
+    let complaints = complaints.map(|complaint| Setting::blame(&file.settings, complaint));
+    diagnostics.extend(session::about(&input.file, complaints));
     let prepared = session::choose_camera(&file.scene, file.render.camera.as_deref())
         .map_err(|d| vec![d])
         .and_then(|camera| session::prepare_world(file.scene, camera, FILM, input.memory_limit));

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use ajar_live::tev::Tev;
-use ajar_scene::{Cause, Diagnostic, SceneFile, Severity};
+use ajar_scene::{Cause, Diagnostic, SceneFile, Setting, Severity};
 
 use super::{
     Exit,
     appearance::Appearance,
+    arguments::parse_exr,
     block::Block,
     demand::Demand,
     input::Input,
@@ -16,10 +17,10 @@ use super::{
     signals::Signals,
 };
 use crate::{
-    image::Destination,
+    image::{Destination, Form},
     plan::Plan,
     session::{self, Reading},
-    watch::{End, Options, Subject, Watch},
+    watch::{End, Options, Said, Subject, Watch},
 };
 
 /// Noise at which an image is done where nothing else is said.
@@ -31,7 +32,7 @@ pub(super) struct Args {
     #[command(flatten)]
     input: Input,
     /// Write each finished image here, with a PNG preview beside it
-    #[arg(short, long, value_name = "OUT.exr")]
+    #[arg(short, long, value_name = "OUT.exr", value_parser = parse_exr)]
     output: Option<PathBuf>,
     /// Keep the image of before as EXR in this folder at each change, and the last one at the end
     #[arg(long, value_name = "FOLDER")]
@@ -72,7 +73,10 @@ impl Subject for Args {
     }
 
     fn plan(&self, file: &SceneFile) -> Result<Plan, Diagnostic> {
-        self.demand.or_noise(&file.render, NOISE).plan(file, None)
+        let blame = |complaint| Setting::blame(&file.settings, complaint);
+        let plan = self.demand.or_noise(&file.render, NOISE).plan(file, None).map_err(blame)?;
+        plan.check_memory(self.input.memory_limit).map_err(blame)?;
+        Ok(plan)
     }
 
     fn camera<'a>(&'a self, file: &'a SceneFile) -> Option<&'a str> {
@@ -83,14 +87,27 @@ impl Subject for Args {
         self.output.is_some() || self.exec.is_some()
     }
 
+    fn form(&self, file: &SceneFile) -> Result<Form, Diagnostic> {
+        self.appearance.form(&file.output).map_err(|d| Setting::blame(&file.settings, d))
+    }
+
     fn destination(&self, file: &SceneFile) -> Result<Destination, Diagnostic> {
-        let form = self.appearance.form(&file.output)?;
+        let form = self.form(file)?;
         let mut output = file.output.clone();
         if self.output.is_some() {
             (output.path, output.png) = (self.output.clone(), None);
         }
         let (exr, png) = session::output_paths(&self.input.file, &output);
-        Ok(Destination { exr, png, form })
+        let destination = Destination { exr, png, form };
+        destination.check(&file.files)?;
+        Ok(destination)
+    }
+
+    fn said(&self, camera: &str) -> Said {
+        let mut said = self.input.said();
+        self.demand.say(camera, &mut said);
+        self.appearance.say(&mut said);
+        said
     }
 
     fn memory_limit(&self) -> u64 {
@@ -115,11 +132,12 @@ fn watch(args: &Args, log: Format) -> Result<Exit, Diagnostic> {
     }
     let options = Options { poll: args.poll, tev, snapshots: args.snapshots.clone(), once: args.once };
     let watch = Watch::new(args, options).map_err(|e| failed("watch files", &e))?;
-    let server = if args.once { None } else { Some(page::open(&args.door, &watch, log)?) };
+    let server = if args.once { None } else { Some(page::open(&args.door, &args.input.file, &watch, log)?) };
     let url = server.as_ref().map(|server| server.url());
-    let mut block = Block::new(log, args.verbosity.least(), url, args.exec.as_deref());
+    let block = Block::new(log, args.verbosity.least(), url, args.exec.clone());
+    let mut block = block.map_err(|e| failed("start a thread for the command", &e))?;
     let end = watch.run(signals.stop(), &mut block);
-    block.end();
+    block.end(signals.stop());
     Ok(match end {
         End::Asked if args.once => Exit::Interrupted,
         End::Asked | End::Finished => Exit::Ok,

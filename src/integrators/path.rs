@@ -46,10 +46,11 @@ impl Rounds for PathTracerRounds<'_> {
         let cx = &self.0;
         let window = cx.settings.window;
         (window.y0..window.y1).into_par_iter().for_each(|y| {
-            if cx.cancelled() {
-                return;
-            }
             for x in window.x0..window.x1 {
+                // A row takes longer than those who stop a render are to wait.
+                if cx.cancelled() {
+                    return;
+                }
                 let pixel = u64::from(y) * u64::from(cx.world.camera.width) + u64::from(x);
                 let sequence = Sequence::new(cx.settings.seed, 0, pixel);
                 let mut sum = Rgb::ZERO;

@@ -12,11 +12,13 @@ use crate::Window;
 pub const MIN_ROUNDS: u64 = 8;
 /// Side of the tiles whose worst is reported, pixels.
 const TILE: usize = 64;
+/// The share of a tile's pixels that must have noise for the tile to count: one in so many.
+const SPARSE: usize = 16;
 
 /// Relative standard errors, 0.02 for 2 %.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// Of the median pixel.
+    /// Of the median of the pixels that have noise.
     pub typical: f64,
     /// Of the typical pixel in the worst 64-pixel tile.
     pub worst_tile: f64,
@@ -24,7 +26,8 @@ pub struct Noise {
 
 /// Estimates the noise of a film of `window`; `None` before [`MIN_ROUNDS`] or while the film is black.
 ///
-/// A pixel's relative variance is its variance of the mean over `mean² + (1 % of the image's mean)²`, both averaged over
+/// Pixels that are the same in all rounds, an even background, do not count: an image is not less noisy for having many
+/// of them. A pixel's relative variance is its variance of the mean over `mean² + (1 % of the image's mean)²`, both averaged over
 /// 3 × 3 pixels since single variances are themselves noisy.
 pub fn noise(film: &Film, window: Window) -> Option<Noise> {
     if film.rounds() < MIN_ROUNDS {
@@ -37,14 +40,18 @@ pub fn noise(film: &Film, window: Window) -> Option<Noise> {
     if image_mean <= 0.0 {
         return None;
     }
+    let has_noise: Vec<bool> = variances.iter().map(|&variance| variance > 0.0).collect();
     let floor = (0.01 * image_mean).powi(2);
     let (variances, squares) = (smooth(&variances, width, height), {
         let squares: Vec<f64> = means.iter().map(|m| m * m).collect();
         smooth(&squares, width, height)
     });
-    let relative: Vec<f64> = variances.iter().zip(&squares).map(|(v, s)| v / (s + floor)).collect();
-    let worst = tiles(&relative, width).into_iter().map(median).fold(0.0, f64::max);
-    Some(Noise { typical: median(relative).sqrt(), worst_tile: worst.sqrt() })
+    let relative = variances.iter().zip(&squares).map(|(v, s)| v / (s + floor));
+    let relative: Vec<Option<f64>> = relative.zip(has_noise).map(|(r, noisy)| noisy.then_some(r)).collect();
+    let enough = |tile: &Vec<Option<f64>>| tile.iter().flatten().count() * SPARSE >= tile.len();
+    let worst = tiles(&relative, width).into_iter().filter(enough).map(median).fold(0.0, f64::max);
+    let typical = median(relative);
+    Some(Noise { typical: typical.sqrt(), worst_tile: worst.max(typical).sqrt() })
 }
 
 /// Mean over each pixel's 3 × 3 neighbourhood inside the image.
@@ -61,7 +68,7 @@ fn smooth(values: &[f64], width: usize, height: usize) -> Vec<f64> {
         .collect()
 }
 
-fn tiles(values: &[f64], width: usize) -> Vec<Vec<f64>> {
+fn tiles<T: Copy>(values: &[T], width: usize) -> Vec<Vec<T>> {
     let columns = width.div_ceil(TILE);
     let rows = (values.len() / width).div_ceil(TILE);
     let mut tiles = vec![Vec::new(); columns * rows];
@@ -71,9 +78,11 @@ fn tiles(values: &[f64], width: usize) -> Vec<Vec<f64>> {
     tiles
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+/// Of those that there are; 0 where there are none.
+fn median(values: Vec<Option<f64>>) -> f64 {
+    let mut values: Vec<f64> = values.into_iter().flatten().collect();
     let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 #[cfg(test)]
@@ -112,6 +121,17 @@ mod tests {
         let found =
             noise(&film(64, |p| if p % 130 >= 64 { 1.0 } else { 0.1 }), WINDOW).expect("enough rounds");
         assert!(found.worst_tile / (1.0 / 2.0 / 8.0) > 0.9, "{found:?}");
+    }
+
+    #[test]
+    fn pixels_without_noise_do_not_count() {
+        // Four columns in five are background.
+        let found =
+            noise(&film(64, |p| if p % 130 >= 104 { 0.4 } else { 0.0 }), WINDOW).expect("enough rounds");
+        let expected = 0.4 / 2.0 / 8.0;
+        assert!((found.typical / expected - 1.0).abs() < 0.1, "{found:?}");
+        assert!((found.worst_tile / expected - 1.0).abs() < 0.1, "{found:?}");
+        assert_eq!(noise(&film(64, |_| 0.0), WINDOW), Some(Noise { typical: 0.0, worst_tile: 0.0 }));
     }
 
     #[test]

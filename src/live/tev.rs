@@ -28,6 +28,11 @@ impl Tev {
         Self { address: address.into(), name: name.into(), stream: None, size: None }
     }
 
+    /// Where it is looked for.
+    pub fn address(&self) -> &str {
+        &self.address
+    }
+
     /// Shows an image, rows from the top.
     ///
     /// # Errors

@@ -199,7 +199,10 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::{Purpose, Rng};
+    use crate::{
+        chi2::{DISC_CELLS, disc_cell, p_value_of_even},
+        rng::{Purpose, Rng},
+    };
 
     fn camera(projection: scene::Projection) -> Camera {
         let camera = scene::Camera { name: String::new(), projection, aspect: None, exposure: 1.0 };
@@ -233,6 +236,37 @@ mod tests {
                 assert!((back.direction + ray.direction).length() < 1e-12);
             }
         }
+    }
+
+    /// Rays of one raster position fill the lens evenly and meet in the plane in focus.
+    #[test]
+    fn rays_start_evenly_over_the_lens() {
+        const SAMPLES: u32 = 100_000;
+        let (radius, focus) = (0.25, 3.0);
+        let camera = camera(scene::Projection::Perspective {
+            yfov: 0.9,
+            lens_radius: radius as f32,
+            focus_distance: focus as f32,
+            shift: [0.0; 2],
+        });
+        let (mut rng, raster) = (Rng::new(2, Purpose::Test, 0, 0), DVec2::new(11.0, 37.0));
+        let in_focus = camera.image_point(raster).extend(-1.0) * focus;
+        let mut on_lens = || {
+            let ray = camera.ray(raster, rng.pair());
+            let from = camera.frame.to_local(ray.origin - camera.origin);
+            let direction = camera.frame.to_local(ray.direction);
+            assert!((from - direction * (focus / direction.z) - in_focus).length() < 1e-12);
+            assert!(from.z.abs() < 1e-12 && from.length() < radius + 1e-12);
+            from.truncate() / radius
+        };
+        let p = p_value_of_even(DISC_CELLS, SAMPLES, || disc_cell(on_lens()));
+        assert!(p > 1e-4, "{p}");
+        // Teeth: a little too much of the middle of the lens.
+        let p = p_value_of_even(DISC_CELLS, SAMPLES, || {
+            let p = on_lens();
+            disc_cell(p * p.length().powf(0.05))
+        });
+        assert!(p < 1e-4, "{p}");
     }
 
     #[test]

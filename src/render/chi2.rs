@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Cells of the sphere in polar angle and in azimuth around Z.
@@ -59,6 +59,46 @@ fn gauss(f: &dyn Fn(f64, f64) -> f64, from: [f64; 2], size: [f64; 2]) -> f64 {
         }
     }
     sum * size[0] * size[1]
+}
+
+/// Cells of a triangle, all of the same area: it is split into four alike parts, and these again and again.
+pub const TRIANGLE_CELLS: usize = 64;
+
+/// The cell of the point with barycentric weights `b1` and `b2` of the second and third corner.
+pub fn triangle_cell([b1, b2]: [f64; 2]) -> usize {
+    let mut weights = [1.0 - b1 - b2, b1, b2];
+    let mut cell = 0;
+    for _ in 0..TRIANGLE_CELLS.ilog(4) {
+        // At a corner, or in the middle, which is turned around.
+        let corner = weights.iter().position(|&weight| weight >= 0.5);
+        weights = match corner {
+            Some(corner) => std::array::from_fn(|i| 2.0 * weights[i] - f64::from(u8::from(i == corner))),
+            None => weights.map(|weight| 1.0 - 2.0 * weight),
+        };
+        cell = 4 * cell + corner.unwrap_or(3);
+    }
+    cell
+}
+
+const RINGS: usize = 6;
+const SECTORS: usize = 12;
+/// Cells of the unit disc, all of the same area.
+pub const DISC_CELLS: usize = RINGS * SECTORS;
+
+/// The cell of a point of the unit disc.
+pub fn disc_cell(p: DVec2) -> usize {
+    let ring = (p.length_squared() * RINGS as f64) as usize;
+    let sector = (p.y.atan2(p.x) / TAU).rem_euclid(1.0) * SECTORS as f64;
+    ring.min(RINGS - 1) * SECTORS + (sector as usize).min(SECTORS - 1)
+}
+
+/// p-value of `n` samples of which each cell of `cells` should get the same share.
+pub fn p_value_of_even(cells: usize, n: u32, mut sample: impl FnMut() -> usize) -> f64 {
+    let mut counts = vec![0.0; cells];
+    for _ in 0..n {
+        counts[sample()] += 1.0;
+    }
+    p_value(counts.into_iter().map(|count| (f64::from(n) / cells as f64, count)))
 }
 
 /// p-value of counts, each with the count that is expected; cells of small expectation are taken together.

@@ -159,7 +159,14 @@ pub fn triangle_to_square(bary: [f64; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::{Purpose, Rng};
+    use crate::{
+        chi2::{
+            DISC_CELLS, TRIANGLE_CELLS, cell, disc_cell, integrals, p_value, p_value_of_even, triangle_cell,
+        },
+        rng::{Purpose, Rng},
+    };
+
+    const SAMPLES: u32 = 200_000;
 
     fn close(a: [f64; 2], b: [f64; 2]) {
         assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9, "{a:?} {b:?}");
@@ -214,7 +221,7 @@ mod tests {
         assert!(cone_to_square(DVec3::X, 0.5).is_none());
     }
 
-    /// Means of polynomials, which fix the density up to fourth order.
+    /// Means of a few polynomials, to four digits.
     #[test]
     fn moments_match_the_densities() {
         let n = 512;
@@ -241,6 +248,60 @@ mod tests {
             [1.0 / 4.0, 1.0 / 24.0, 2.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 3.0 / 4.0, 1.0 / 12.0, 1.0 / 6.0];
         for (sum, expected) in sums.iter().zip(expected) {
             assert!((sum - expected).abs() < 1e-4, "{sum} {expected}");
+        }
+    }
+
+    /// Cells are told from the points alone: an uneven warp with the right inverse would fill its own evenly.
+    #[test]
+    fn discs_and_triangles_are_filled_evenly() {
+        let mut rng = Rng::new(3, Purpose::Test, 0, 0);
+        let mut disc = |bend: f64| {
+            p_value_of_even(DISC_CELLS, SAMPLES, || {
+                let p = square_to_disc(rng.pair());
+                disc_cell(p * p.length().powf(bend))
+            })
+        };
+        let (even, uneven) = (disc(0.0), disc(0.05));
+        assert!(even > 1e-4 && uneven < 1e-4, "{even} {uneven}");
+        let mut triangle = |bend: f64| {
+            p_value_of_even(TRIANGLE_CELLS, SAMPLES, || {
+                let [u, v] = rng.pair();
+                triangle_cell(square_to_triangle([u.powf(1.0 + bend), v]))
+            })
+        };
+        let (even, uneven) = (triangle(0.0), triangle(0.05));
+        assert!(even > 1e-4 && uneven < 1e-4, "{even} {uneven}");
+    }
+
+    #[test]
+    fn directions_follow_their_densities() {
+        const COS_MAX: f64 = std::f64::consts::FRAC_1_SQRT_2;
+        let mut rng = Rng::new(4, Purpose::Test, 0, 0);
+        let mut check = |sample: &dyn Fn([f64; 2]) -> DVec3, density: &dyn Fn(DVec3) -> f64| {
+            let expected = integrals(density);
+            let mut counts = vec![0.0; expected.len()];
+            (0..SAMPLES).for_each(|_| counts[cell(sample(rng.pair()))] += 1.0);
+            p_value(expected.into_iter().map(|p| p * f64::from(SAMPLES)).zip(counts))
+        };
+        let cone = |w: DVec3| if w.z > COS_MAX { cone_pdf(COS_MAX) } else { 0.0 };
+        for (name, p, wrong) in [
+            (
+                "hemisphere",
+                check(&square_to_cosine_hemisphere, &|w| cosine_hemisphere_pdf(w.z)),
+                check(&square_to_cosine_hemisphere, &|w| w.z.max(0.0).powf(1.1) * 1.05 * FRAC_1_PI),
+            ),
+            (
+                "sphere",
+                check(&square_to_sphere, &|_| 0.25 * FRAC_1_PI),
+                check(&square_to_sphere, &|w| 0.25 * FRAC_1_PI * (1.0 + 0.1 * w.x)),
+            ),
+            (
+                "cone",
+                check(&|u| square_to_cone(u, COS_MAX), &cone),
+                check(&|u| square_to_cone(u, COS_MAX), &|w| cone(w) * (1.0 + 0.1 * w.x)),
+            ),
+        ] {
+            assert!(p > 1e-4 && wrong < 1e-4, "{name}: {p} {wrong}");
         }
     }
 }

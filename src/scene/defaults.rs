@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{BVec3, DAffine3, DVec3, Vec3};
 
 use crate::{
     Camera, Diagnostic, Image, ImageSource, Light, LightKind, Mesh, Node, Projection, Scene, Texture,
@@ -11,6 +11,9 @@ use crate::{
 
 /// Vertical angle of the camera that frames a scene, radians.
 const YFOV: f64 = 40.0 * PI / 180.0;
+
+/// The share of its image that the bounds may fill, across or up.
+const FILLED: f64 = 0.9;
 
 /// From the scene's centre towards that camera: in front, to the right, above.
 const VIEW: DVec3 = DVec3::new(0.6, 0.5, 1.0);
@@ -114,6 +117,10 @@ fn area(mesh: &Mesh, world: &DAffine3) -> f64 {
     mesh.triangles.iter().map(triangle).filter(|area| area.is_finite()).sum()
 }
 
+fn corners(low: DVec3, high: DVec3) -> impl Iterator<Item = DVec3> {
+    (0..8).map(move |i| DVec3::select(BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), high, low))
+}
+
 /// The surroundings of the studio as a Radiance HDR image of mean 1 (G. Ward, "Real pixels", Graphics Gems II, 1991),
 /// grey from 1 + slope at the top to 1 − slope at the bottom.
 fn studio() -> Vec<u8> {
@@ -127,17 +134,21 @@ fn studio() -> Vec<u8> {
     file
 }
 
-/// A perspective camera that sees the whole bounding sphere of the scene's bounds from the front, right and above, in an
-/// image `aspect` times as wide as high, and its place in the world. A scene without bounds counts as a ball of 1 m at
-/// the origin.
+/// A perspective camera that sees the whole box of the scene's bounds from the front, right and above, as large as fits
+/// in an image `aspect` times as wide as high with a narrow margin, and its place in the world. A scene without bounds
+/// counts as a cube of 2 m around the origin.
 pub fn framing_camera(scene: &Scene, aspect: f64) -> (Camera, DAffine3) {
-    let (low, high) = scene.bounds().unwrap_or((DVec3::ZERO, DVec3::ZERO));
+    let bounds = scene.bounds().filter(|(low, high)| low != high);
+    let (low, high) = bounds.unwrap_or((DVec3::NEG_ONE, DVec3::ONE));
     let center = (low + high) / 2.0;
-    let extent = (high - low).length() / 2.0;
-    let radius = if extent > 0.0 { extent } else { 1.0 };
-    // The sphere must fit the narrower of the two angles: it touches a cone of half angle a at distance r / sin a.
-    let half = ((YFOV / 2.0).tan() * aspect.min(1.0)).atan();
-    let distance = radius / half.sin();
+    let turn = looking(DVec3::ZERO, -VIEW, DVec3::Y).inverse();
+    let half = (YFOV / 2.0).tan() * FILLED;
+    let farthest = |corner: DVec3| {
+        let seen = turn.transform_vector3(corner - center);
+        // A corner is seen if it lies within the angle, from the distance that its own depth leaves.
+        (seen.x.abs() / (half * aspect)).max(seen.y.abs() / half) + seen.z
+    };
+    let distance = corners(low, high).map(farthest).fold(f64::MIN_POSITIVE, f64::max);
     let camera = Camera {
         name: "default".to_owned(),
         projection: Projection::Perspective {

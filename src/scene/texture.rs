@@ -25,7 +25,7 @@ impl std::fmt::Debug for ImageSource {
     }
 }
 
-/// An image file (PNG, JPEG, WebP, TIFF, Radiance HDR, OpenEXR; the bytes decide, not the name).
+/// An image file (PNG, JPEG, WebP, TIFF, TGA, BMP, Radiance HDR, OpenEXR, KTX2; the bytes decide, not the name).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Image {
     /// Name for messages.

@@ -1,5 +1,7 @@
 // Moving the camera with the pointer: about its target, sideways, and nearer.
 
+import { say } from "./status.js";
+
 const PAUSE = 60;
 
 const add = (a, b, s = 1) => a.map((x, i) => x + s * b[i]);
@@ -25,8 +27,19 @@ export class Camera {
   }
 
   // What the program says; while it is being moved, what the pointer says counts.
-  learn({ position, target, up, yfov }) {
-    if (performance.now() - this.#touched > 1500) this.#place = { position, target, up, yfov };
+  learn({ name, position, target, up, yfov, half_height }) {
+    if (performance.now() - this.#touched > 1500) this.#place = { name, position, target, up, yfov, half_height };
+  }
+
+  // As scene files say it.
+  toml() {
+    if (!this.#place) return "";
+    const { name, position, target, up, yfov, half_height } = this.#place;
+    const keys = { name, position, target, up, yfov, half_height };
+    // A hundredth of a millimetre is enough, and reads better.
+    const said = (value) => (typeof value === "string" ? JSON.stringify(value) : String(Number(value.toFixed(5))));
+    const line = ([key, value]) => `${key} = ${Array.isArray(value) ? `[${value.map(said).join(", ")}]` : said(value)}\n`;
+    return "[[camera]]\n" + Object.entries(keys).filter(([, value]) => value).map(line).join("");
   }
 
   // `dx` and `dy` in parts of the canvas's height.
@@ -41,10 +54,12 @@ export class Camera {
     });
   }
 
+  // `dx` and `dy` in parts of the image's height.
   pan(dx, dy) {
-    this.#move(({ position, target, up, yfov }) => {
+    if (this.#isParallel && !this.#place.half_height) return say("This camera is orthographic: what moves it sideways is its position in the file.");
+    this.#move(({ position, target, up, yfov, half_height }) => {
       const away = add(position, target, -1);
-      const reach = Math.hypot(...away) * 2 * Math.tan(((yfov ?? 40) * Math.PI) / 360);
+      const reach = 2 * (half_height ?? Math.hypot(...away) * Math.tan((yfov * Math.PI) / 360));
       const right = unit(cross(up, away)), above = unit(cross(away, right));
       const by = add(right.map((x) => -x * dx * reach), above, dy * reach);
       return { position: add(position, by), target: add(target, by), up };
@@ -52,7 +67,12 @@ export class Camera {
   }
 
   dolly(factor) {
+    if (this.#isParallel) return say("This camera is orthographic: what makes things larger is its half_height in the file.");
     this.#move(({ position, target, up }) => ({ position: add(target, add(position, target, -1), factor), target, up }));
+  }
+
+  get #isParallel() {
+    return this.#place && !this.#place.yfov;
   }
 
   #move(how) {

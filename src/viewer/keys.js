@@ -5,10 +5,11 @@ const KEYS = (act) => [
   ["n", "N", "begin the image anew", act.restart],
   ["[", "[", "darker by a quarter stop", () => act.exposure(-0.25)],
   ["]", "]", "brighter by a quarter stop", () => act.exposure(0.25)],
-  ["0", "0", "exposure as it is", () => act.exposure(0)],
+  ["0", "0", "exposure as at the beginning", () => act.exposure(0)],
   ["t", "T", "next tone map", act.curve],
   ["l", "L", "false colour: stops from middle grey", act.falseColor],
   ["v", "V", "next of what can be shown: the image, albedo, normals, depth …", act.layer],
+  ["m", "M", "everything as if made of clay, or as it is", act.clay],
   ["f", "F", "fit the image", act.fit],
   ["1", "1", "a pixel for a pixel", act.actual],
   ["w", "W", "wipe between before and now", act.wipe],
@@ -33,10 +34,18 @@ export function addKeys(actions) {
   }
   document.addEventListener("keydown", (event) => {
     const isTyping = event.target.matches?.("input[type=number], textarea, select");
-    if (isTyping || event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+    if (isTyping && ["Enter", "Escape"].includes(event.key)) event.target.blur();
+    const isPressing = event.key === " " && event.target.matches?.("button, summary, input[type=color]");
+    if (isTyping || isPressing || event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
     const found = keys.find(([key]) => key === event.key.toLowerCase());
     if (!found) return;
     event.preventDefault();
     found[3]();
   });
+  // What is used with the pointer gives the keys back; who goes about with keys stays where they are.
+  let isPointed = false;
+  document.addEventListener("pointerdown", () => (isPointed = true), true);
+  document.addEventListener("keydown", () => (isPointed = false), true);
+  document.addEventListener("click", ({ target }) => isPointed && target.closest("button")?.blur());
+  document.addEventListener("change", ({ target }) => isPointed && target.matches("select") && target.blur());
 }

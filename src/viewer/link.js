@@ -6,7 +6,8 @@ export class Link {
   #socket = null;
   #pause = FIRST_PAUSE;
 
-  // `hear` gets each document, `tiles` each part of a frame, `state` whether there is a connection.
+  // `hear` gets each document, `tiles` each part of a frame, `state` how it stands: "open", "closed", or "full" where the
+  // program is there but has no place for another page.
   constructor({ hear, tiles, state }) {
     this.hear = hear;
     this.tiles = tiles;
@@ -18,26 +19,40 @@ export class Link {
     if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(JSON.stringify(request));
   }
 
+  // Connects anew: the program then sends all that there is.
+  again() {
+    this.#socket.onopen = this.#socket.onmessage = this.#socket.onclose = null;
+    this.#socket.close();
+    this.#connect();
+  }
+
   #connect() {
     const address = new URL("socket", location.href);
     address.protocol = "ws:";
     const socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
+    let isOpened = false;
     socket.onopen = () => {
+      isOpened = true;
       this.#pause = FIRST_PAUSE;
-      this.state(true);
+      this.state("open");
     };
     socket.onmessage = ({ data }) => {
       if (typeof data === "string") this.hear(JSON.parse(data));
       else this.tiles(data);
     };
-    socket.onclose = () => {
-      this.state(false);
+    socket.onclose = async () => {
+      this.state(!isOpened && (await isThere()) ? "full" : "closed");
       setTimeout(() => this.#connect(), this.#pause);
       this.#pause = Math.min(this.#pause * 2, LONGEST_PAUSE);
     };
     this.#socket = socket;
   }
+}
+
+// Whether the program answers: browsers do not tell why a socket was refused.
+function isThere() {
+  return fetch(new URL("style.css", location.href)).then(({ ok }) => ok, () => false);
 }
 
 // Parts of frames: u32 width, height, whether it is the last part, count; then for each tile u32 number and its halves.

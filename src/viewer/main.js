@@ -1,25 +1,48 @@
 // The page: wires what the program says, what is seen, and what the user does.
 
 import { Camera } from "./camera.js";
+import { copy } from "./clipboard.js";
+import { Compare } from "./compare.js";
 import { addKeys } from "./keys.js";
 import { Layers } from "./layer.js";
 import { Link } from "./link.js";
 import { Panel } from "./panel.js";
 import { addPointer } from "./pointer.js";
 import { Screen } from "./screen.js";
-import { showNotes, showProbe, showState } from "./status.js";
+import { cannot, showLink, showNotes, showProbe, showState } from "./status.js";
 import { showVariants } from "./variants.js";
 
 const $ = (id) => document.getElementById(id);
 
-const screen = new Screen($("canvas"));
-const link = new Link({ hear, tiles: (part) => screen.tiles(part), state: showLink });
+const screen = made();
+const layers = new Layers(screen);
+const compare = new Compare(screen, layers);
+const link = new Link({ hear, tiles: (part) => screen.tiles(part), state: learnLink });
 const send = (request) => link.send(request);
 const camera = new Camera(send);
 const panel = new Panel(send);
-const layers = new Layers(screen);
 let state = { phase: "loading", size: [0, 0], snapshots: [] };
-let compared = null;
+// How the program says that images are looked at.
+let meant = { exposure: 0, tone_map: "agx" };
+
+function made() {
+  try {
+    return new Screen($("canvas"), () => {
+      forget();
+      link.again();
+    });
+  } catch (error) {
+    cannot(error.message);
+    throw error;
+  }
+}
+
+// Images that are here are those of a program that may be gone, or the graphics card has lost them.
+function forget() {
+  screen.now.forget();
+  layers.forget();
+  compare.forget();
+}
 
 function hear(document) {
   if (document.type === "state") learn(document);
@@ -28,9 +51,10 @@ function hear(document) {
     panel.learn(document);
     showVariants(document.imports, send);
     showNotes(document.notes);
-  } else if (document.type === "probe") {
+    if (document.view) begin(document.view);
+  } else if (document.type === "probe" && pointer.isOver()) {
     showProbe(document);
-    if (document.material && pointer.chosen(document.x, document.y)) panel.choose(document.material);
+    if (document.hit?.material && pointer.chosen(document.x, document.y)) panel.choose(document.hit.material);
   }
 }
 
@@ -38,9 +62,11 @@ function learn(next) {
   const isResized = next.image > 0 && String(next.size) !== String(screen.view.size);
   const isWhole = String(next.window) === String([0, 0, ...next.size]);
   screen.view.region = isWhole || next.image === 0 ? null : next.window;
+  const isBetter = next.image !== state.image || next.rounds !== state.rounds;
   state = next;
   showState(state);
-  showSnapshots();
+  compare.learn(state.snapshots);
+  if (isBetter && pointer.isOver()) pointer.look();
   if (isResized) {
     screen.view.size = next.size;
     screen.fit();
@@ -52,61 +78,16 @@ function learn(next) {
   document.body.dataset.phase = next.phase;
 }
 
-function showLink(isOpen) {
-  $("offline").hidden = isOpen;
-  document.body.dataset.link = isOpen ? "open" : "closed";
-  if (!isOpen) {
-    screen.now.forget();
-    layers.forget();
-    $("phase").textContent = "offline";
-    $("phase").dataset.phase = "offline";
-  }
+// Takes what the scene says, when it says something else than before: what was chosen here stays.
+function begin(view) {
+  if (view.exposure !== meant.exposure) setExposure(view.exposure);
+  if (view.tone_map !== meant.tone_map) setCurve(view.tone_map);
+  meant = view;
 }
 
-// Images of before, the newest first.
-function showSnapshots() {
-  const list = $("snapshots");
-  const names = JSON.stringify([state.snapshots, compared]);
-  if (list.dataset.names === names) return;
-  list.dataset.names = names;
-  const buttons = state.snapshots.toReversed().map(({ image, changed, samples }) => {
-    const text = `${image}  ${changed.join(", ") || "first image"}, ${samples} spp`;
-    const button = Object.assign(document.createElement("button"), { textContent: text, title: text });
-    button.onclick = () => compare(image);
-    button.classList.toggle("on", image === compared);
-    return button;
-  });
-  if (buttons.length) list.replaceChildren(...buttons);
-  for (const id of ["wipe", "swap", "difference"]) $(id).disabled = buttons.length === 0;
-}
-
-async function compare(image) {
-  const answer = await fetch(new URL(`image/${image}`, location.href));
-  if (!answer.ok) return;
-  screen.before.add(await answer.arrayBuffer());
-  compared = image;
-  showSnapshots();
-  if (screen.view.mode === "now") setMode("wipe");
-  screen.draw();
-}
-
-async function setMode(mode) {
-  const next = screen.view.mode === mode ? "now" : mode;
-  if (next !== "now") layers.choose("");
-  if (next !== "now" && compared === null) {
-    const last = state.snapshots.at(-1);
-    if (!last) return;
-    screen.view.mode = next;
-    await compare(last.image);
-  }
-  screen.view.mode = next;
-  for (const [id, name] of [["wipe", "wipe"], ["swap", "before"], ["difference", "difference"]]) {
-    $(id).classList.toggle("on", next === name);
-  }
-  $("wiper").hidden = next !== "wipe";
-  $("wiper").style.left = `${screen.view.wipe * 100}%`;
-  document.body.dataset.mode = next;
-  screen.draw();
+function learnLink(is) {
+  showLink(is);
+  if (is !== "open") forget();
 }
 
 function setExposure(stops) {
@@ -122,7 +103,7 @@ function setCurve(curve) {
 }
 
 function save() {
-  $("canvas").toBlob((blob) => {
+  screen.png((blob) => {
     const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: "ajar.png" });
     link.click();
     URL.revokeObjectURL(link.href);
@@ -133,14 +114,15 @@ const actions = {
   run: () => send({ do: state.phase === "rendering" ? "stop" : "continue" }),
   restart: () => send({ do: "restart" }),
   fit: () => screen.fit(),
-  actual: () => screen.zoomAt($("canvas").clientWidth / 2, $("canvas").clientHeight / 2, 1 / screen.view.zoom / devicePixelRatio),
-  wipe: () => setMode("wipe"),
-  swap: () => setMode("before"),
+  actual: () => screen.actual(),
+  wipe: () => compare.toggle("wipe"),
+  swap: () => compare.toggle("before"),
   layer: () => layers.next(),
-  difference: () => setMode("difference"),
+  difference: () => compare.toggle("difference"),
   save,
-  exposure: (by) => setExposure(by === 0 ? 0 : screen.view.exposure + by),
+  exposure: (by) => setExposure(by === 0 ? meant.exposure : screen.view.exposure + by),
   curve: () => setCurve($("tonemap").options[($("tonemap").selectedIndex + 1) % $("tonemap").options.length].value),
+  clay: () => send({ do: "clay", show: !state.is_clay }),
   falseColor: () => setCurve(screen.view.curve === "false" ? "agx" : "false"),
   panel: () => document.body.classList.toggle("bare"),
   help: () => $("help").showModal(),
@@ -155,7 +137,7 @@ $("run").onclick = actions.run;
 $("restart").onclick = actions.restart;
 $("png").onclick = save;
 $("help-button").onclick = actions.help;
-for (const id of ["fit", "actual", "wipe", "swap", "difference"]) $(id).onclick = actions[id];
+for (const id of ["fit", "actual", "clay"]) $(id).onclick = actions[id];
 $("camera-tool").onclick = () => pointer.choose("camera");
 $("region-tool").onclick = () => (state.phase !== "loading" && screen.view.region ? actions.whole() : pointer.choose("region"));
 $("exposure").oninput = (event) => setExposure(Number(event.target.value));
@@ -165,6 +147,7 @@ $("balance").oninput = (event) => {
   screen.draw();
 };
 $("tonemap").onchange = (event) => setCurve(event.target.value);
-$("copy").onclick = () => navigator.clipboard.writeText(state.edits);
+$("copy").onclick = () => copy(state.edits);
+$("copy-camera").onclick = () => copy(camera.toml());
 $("save").onclick = () => send({ do: "save" });
 $("revert").onclick = () => send({ do: "revert" });

@@ -9,7 +9,9 @@ const PAUSE = 80;
 
 export function addPointer({ screen, camera, send }) {
   const canvas = $("canvas"), view = screen.view;
-  let tool = "look", drag = null, clicked = null, asked = 0;
+  let tool = "look", drag = null, clicked = null;
+  // Where the pointer is over the image, and what asks in a moment what is there.
+  let spot = null, timer = null;
   // Where each finger is; two of them zoom and move.
   const fingers = new Map();
 
@@ -22,13 +24,23 @@ export function addPointer({ screen, camera, send }) {
     canvas.dataset.tool = tool;
     for (const it of ["camera", "region"]) $(`${it}-tool`).classList.toggle("on", tool === it);
   };
-  const probe = ([x, y], isChosen) => {
-    const [px, py] = screen.pixelAt(x, y).map(Math.floor);
+  const ask = (isChosen) => {
+    const [px, py] = spot ? screen.pixelAt(...spot).map(Math.floor) : [-1, -1];
     const isInside = px >= 0 && py >= 0 && px < view.size[0] && py < view.size[1];
-    $("probe").hidden = !isInside;
-    if (!isInside) return;
+    if (!isInside) $("probe").hidden = true;
+    else send({ do: "probe", x: px, y: py });
     if (isChosen) clicked = `${px},${py}`;
-    send({ do: "probe", x: px, y: py });
+  };
+  const look = () => {
+    timer ??= setTimeout(() => {
+      timer = null;
+      ask(false);
+    }, PAUSE);
+  };
+  // The scene goes with the pointer.
+  const pan = (dx, dy) => {
+    const height = view.zoom * view.size[1];
+    camera.pan(dx / height, dy / height);
   };
   // What lies between two fingers: its middle and how far they are apart.
   const span = () => {
@@ -41,11 +53,11 @@ export function addPointer({ screen, camera, send }) {
     const { middle, apart } = span();
     const [dx, dy] = [middle[0] - before.middle[0], middle[1] - before.middle[1]];
     if (tool === "camera") {
-      camera.pan(dx / canvas.clientHeight, dy / canvas.clientHeight);
+      pan(dx, dy);
       camera.dolly(before.apart / apart);
       return;
     }
-    view.center = [view.center[0] - dx / view.zoom, view.center[1] - dy / view.zoom];
+    screen.pan(dx, dy);
     screen.zoomAt(...middle, apart / before.apart);
   };
   const begin = (event) => {
@@ -65,24 +77,16 @@ export function addPointer({ screen, camera, send }) {
   };
   const move = (event) => {
     if (fingers.size === 2 && fingers.has(event.pointerId)) return pinch(event);
-    const [x, y] = at(event);
-    if (!drag) {
-      if (performance.now() - asked > PAUSE) {
-        asked = performance.now();
-        probe([x, y], false);
-      }
-      return;
-    }
+    const [x, y] = (spot = at(event));
+    if (!drag) return look();
     const [dx, dy] = [x - drag.last[0], y - drag.last[1]];
     drag.moved ||= Math.hypot(x - drag.start[0], y - drag.start[1]) >= CLICK;
     if (!drag.moved) return;
     drag.last = [x, y];
     const height = canvas.clientHeight;
-    if (drag.kind === "move") {
-      view.center = [view.center[0] - dx / view.zoom, view.center[1] - dy / view.zoom];
-      screen.draw();
-    } else if (drag.kind === "orbit") camera.orbit(dx / height, dy / height);
-    else if (drag.kind === "pan") camera.pan(dx / height, dy / height);
+    if (drag.kind === "move") screen.pan(dx, dy);
+    else if (drag.kind === "orbit") camera.orbit(dx / height, dy / height);
+    else if (drag.kind === "pan") pan(dx, dy);
     else if (drag.kind === "dolly") camera.dolly(Math.exp((dy * 2) / height));
     else marquee(drag.start, [x, y]);
   };
@@ -92,7 +96,8 @@ export function addPointer({ screen, camera, send }) {
     const { kind, start, moved } = drag;
     drag = null;
     $("marquee").hidden = true;
-    if (!moved && kind !== "region") probe(at(event), true);
+    spot = at(event);
+    if (!moved && kind !== "region") ask(true);
     if (kind === "region" && moved) {
       const [a, b] = [screen.pixelAt(...start), screen.pixelAt(...at(event))];
       const low = (i) => Math.max(0, Math.floor(Math.min(a[i], b[i])));
@@ -109,13 +114,19 @@ export function addPointer({ screen, camera, send }) {
     fingers.delete(event.pointerId);
     drag = null;
   });
-  canvas.addEventListener("pointerleave", () => ($("probe").hidden = true));
+  canvas.addEventListener("pointerleave", ({ pointerType }) => {
+    // A finger that is lifted leaves too, and what it touched is still of interest.
+    if (pointerType === "touch") return;
+    spot = null;
+    $("probe").hidden = true;
+  });
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
     const factor = Math.exp(-event.deltaY / (event.deltaMode ? 8 : 400));
     if (tool === "camera" || event.altKey) camera.dolly(1 / factor);
     else screen.zoomAt(...at(event), factor);
+    look();
   }, { passive: false });
 
   const wiper = $("wiper");
@@ -127,7 +138,8 @@ export function addPointer({ screen, camera, send }) {
     screen.draw();
   });
 
-  return { choose, chosen: (x, y) => clicked === `${x},${y}` && ((clicked = null), true) };
+  // `look` asks again what is where the pointer rests; `isOver` is whether somebody still wants to know.
+  return { choose, look, isOver: () => spot !== null, chosen: (x, y) => clicked === `${x},${y}` && ((clicked = null), true) };
 }
 
 function marquee([x0, y0], [x1, y1]) {

@@ -94,7 +94,7 @@ impl Watch<'_> {
     /// The image at rest, if there is one, becomes a file where that is wanted.
     pub(super) fn keep_on_disk(&mut self, view: &mut dyn View) {
         let Some(archive) = &mut self.archive else { return };
-        let rendered = self.resting.take().filter(|it| it.film.rounds() > 0);
+        let rendered = self.resting.take().map(|it| it.rendered).filter(|it| it.film.rounds() > 0);
         let (Some(rendered), Some(opened)) = (rendered, self.opened.take()) else { return };
         if let Err(warning) = archive.keep(opened, rendered, &self.state.shown_for) {
             view.say(&[warning]);

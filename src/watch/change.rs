@@ -2,15 +2,17 @@
 
 use std::{
     sync::Arc,
-    time::{Duration, SystemTime},
+    time::{Instant, SystemTime},
 };
 
 use ajar_integrators::stop::StopRules;
 use ajar_scene::{Cause, Diagnostic};
 
 use super::{
-    Phase, View, Watch, describe, edits,
-    opened::{Desk, Opened},
+    Event, Phase, View, Watch, describe,
+    draft::Draft,
+    edits,
+    opened::{Desk, Opened, Read},
     state::Label,
     worker::{Job, Worker},
 };
@@ -20,7 +22,7 @@ impl Watch<'_> {
     /// Ends the render at work.
     pub(super) fn rest(&mut self) {
         if let Some(worker) = self.worker.take() {
-            self.resting = worker.end();
+            self.resting = worker.rest();
             self.number += 1;
         }
     }
@@ -29,46 +31,78 @@ impl Watch<'_> {
     pub(super) fn read(&mut self, view: &mut dyn View) {
         let was_at_work = self.worker.is_some();
         self.rest();
-        self.is_stale = false;
         self.state.phase = Phase::Loading;
         self.tell(view);
-        let since = SystemTime::now();
-        let desk = Desk {
-            subject: self.subject,
-            imports: &self.imports,
-            draft: self.draft.at(&self.layer, self.subject.path()),
-            variants: if is_scene_file(self.subject.path()) { Vec::new() } else { self.draft.variants() },
-            wants_output: self.subject.wants_images() || self.archive.is_some(),
-            before: self.opened.as_ref().map(|opened| (&*opened.world, &self.changed)),
-        };
-        let read = desk.read();
+        let mut read = self.attempt();
+        while read.opened.is_err() && self.may_be_half_written(view) {
+            read = self.attempt();
+        }
+        self.doubt = None;
         match read.opened {
             Ok(opened) => {
-                self.files = read.files;
-                self.watcher.watch(self.files.clone(), since);
                 self.imports.sweep();
                 view.say(&read.messages);
                 self.replace(opened, &read.messages, view);
             }
-            Err(errors) => {
-                // What was needed before may be needed again.
-                self.files.extend(read.files);
-                self.watcher.watch(self.files.clone(), since);
-                self.refuse(errors, was_at_work, view);
-            }
+            Err(errors) => self.refuse(errors, was_at_work, view),
         }
+    }
+
+    /// Reads the scene as it is now, and watches what it depends on.
+    fn attempt(&mut self) -> Read {
+        self.is_stale = false;
+        let since = SystemTime::now();
+        let desk = Desk {
+            subject: self.subject,
+            imports: &self.imports,
+            draft: self.draft.over(self.subject.path()),
+            camera: self.draft.camera(),
+            variants: if is_scene_file(self.subject.path()) { Vec::new() } else { self.draft.variants() },
+            is_clay: self.draft.is_clay(),
+            wants_output: self.subject.wants_images() || self.archive.is_some(),
+            before: self.opened.as_ref().map(|opened| (&*opened.world, &self.changed)),
+        };
+        let mut read = desk.read();
+        if read.opened.is_err() {
+            // What was needed before may be needed again.
+            read.files.extend(std::mem::take(&mut self.files));
+        }
+        self.files = std::mem::take(&mut read.files);
+        self.watcher.watch(self.files.clone(), since);
+        read
+    }
+
+    /// Whether what is wrong may be a file that is still being written; waits for more of it, or until it should be there.
+    fn may_be_half_written(&mut self, view: &mut dyn View) -> bool {
+        let Some(doubt) = self.doubt.filter(|doubt| Instant::now() < *doubt) else { return false };
+        let mut later = Vec::new();
+        while let Ok(event) = self.events.1.recv_timeout(doubt.saturating_duration_since(Instant::now())) {
+            if matches!(event, Event::Files(_)) {
+                self.hear(event, view);
+                break;
+            }
+            later.push(event);
+        }
+        for event in later {
+            // Received by this.
+            let _ = self.events.0.send(event);
+        }
+        true
     }
 
     /// Renders a scene in place of the one before.
     fn replace(&mut self, mut opened: Opened, messages: &[Diagnostic], view: &mut dyn View) {
-        self.keep_snapshot();
-        self.keep_on_disk(view);
+        if !self.gesture.has_moved_on() {
+            self.keep_snapshot();
+            self.keep_on_disk(view);
+        }
         self.state.shown_for = self.state.changed.clone();
         self.changed.clear();
         self.sound_draft = self.draft.clone();
         self.state.errors.clear();
         self.state.image += 1;
         self.state.edits = self.draft.text();
+        self.state.is_clay = self.draft.is_clay();
         if let Some(region) = self.region {
             opened.plan.settings.window = region;
         }
@@ -82,6 +116,7 @@ impl Watch<'_> {
 
     /// Stays with the scene before.
     fn refuse(&mut self, errors: Vec<Diagnostic>, was_at_work: bool, view: &mut dyn View) {
+        let errors: Vec<_> = errors.into_iter().map(|error| self.about_draft(error)).collect();
         view.say(&errors);
         // Notes that came with them are no reason; where warnings are, there is nothing worse.
         let worst = errors.iter().map(|error| error.severity).max();
@@ -94,23 +129,27 @@ impl Watch<'_> {
         self.state.phase = match self.opened {
             None => Phase::Waiting,
             Some(_) if was_at_work => return self.work(),
-            Some(_) if self.resting.as_ref().is_some_and(|it| it.reason.is_some()) => Phase::Done,
+            Some(_) if self.resting.as_ref().is_some_and(|it| it.rendered.reason.is_some()) => Phase::Done,
             Some(_) => Phase::Stopped,
         };
         self.is_news = true;
     }
 
+    /// What is wrong with changes of pages is in no file.
+    fn about_draft(&self, error: Diagnostic) -> Diagnostic {
+        let is_of_draft =
+            self.draft.over(self.subject.path()).is_some_and(|(path, _)| error.file == Some(path));
+        if !is_of_draft {
+            return error;
+        }
+        let hint = ["Drop takes them back".to_owned()].into_iter().chain(error.hint).rev();
+        let hint = hint.collect::<Vec<_>>().join("; ");
+        Diagnostic { file: Some(Draft::NAME.into()), place: None, hint: Some(hint), ..error }
+    }
+
     /// Renders, on from where it rests.
     pub(super) fn work(&mut self) {
         let Some(opened) = &self.opened else { return };
-        let resting = self.resting.take().filter(|it| it.film.rounds() > 0);
-        let done = resting.map(|it| (it.film, it.status.elapsed));
-        if done.is_none() {
-            self.state.status(
-                &Status { rounds: 0, samples: 0, elapsed: Duration::ZERO, noise: None },
-                &opened.plan,
-            );
-        }
         self.state.plan(&opened.plan);
         self.number += 1;
         let (world, camera) = (Arc::clone(&opened.world), opened.camera.clone());
@@ -118,8 +157,16 @@ impl Watch<'_> {
         if self.is_endless {
             plan.rules = StopRules::default();
         }
-        let job = Job { world, camera, plan, done };
-        match Worker::start(self.number, job, Arc::clone(&self.screen), self.events.0.clone()) {
+        let rested = self.resting.take().and_then(|resting| resting.go_on(self.number, plan.rules));
+        let worker = rested.map_or_else(
+            || {
+                self.state.status(&Status::default(), &plan);
+                let job = Job { world, camera, plan, wants_glances: !self.once };
+                Worker::start(self.number, job, Arc::clone(&self.screen), self.events.0.clone())
+            },
+            Ok,
+        );
+        match worker {
             Ok(worker) => (self.worker, self.state.phase) = (Some(worker), Phase::Rendering),
             Err(error) => {
                 let message = format!("cannot start a thread to render: {error}");
@@ -130,9 +177,9 @@ impl Watch<'_> {
         self.is_news = true;
     }
 
-    /// What is shown becomes one of the images of before, if it came beyond the first glance.
+    /// What is shown becomes one of the images of before, if there is something.
     fn keep_snapshot(&mut self) {
-        if self.state.rounds > 0 && self.opened.is_some() {
+        if self.state.samples > 0 && self.opened.is_some() {
             let (image, samples) = (self.state.image, self.state.samples);
             let label = Label { image, changed: self.state.shown_for.clone(), samples };
             self.snapshots.add(label, self.screen.frame());

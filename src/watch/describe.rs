@@ -21,6 +21,7 @@ pub(super) fn scene(opened: &Opened, pivot: DVec3, messages: &[Diagnostic]) -> V
         "materials": materials(&opened.world),
         "lights": opened.lights,
         "imports": imports(&opened.varied),
+        "view": { "tone_map": opened.form.tone_map, "exposure": opened.form.exposure },
         "notes": notes(messages),
     })
 }
@@ -91,10 +92,22 @@ pub(super) fn lights(scene: &Scene, settings: &[Setting]) -> Vec<Value> {
         can_change.then(|| {
             let (key, strength) = strength(&light.kind);
             let table = if is_of_file("light", name, settings) { "light" } else { "node" };
-            json!({ "name": name, "table": table, "key": key, "strength": strength, "color": light.color.to_array() })
+            let scale = light_scale(name, settings);
+            json!({
+                "name": name, "table": table, "key": key, "strength": strength, "scale": scale,
+                "color": light.color.to_array(),
+            })
         })
     });
     lamps.take(MOST).collect()
+}
+
+/// What scene files and pages say that a light of an asset is multiplied by, under its own name.
+fn light_scale(name: &str, settings: &[Setting]) -> f64 {
+    let key = format!("node.\"{}\".light_scale", name.escape_debug());
+    // The last one is said by the highest layer.
+    let said = settings.iter().rev().find(|it| it.key == key);
+    said.and_then(|it| it.value.parse().ok()).unwrap_or(1.0)
 }
 
 /// Whether a scene file has a table of this kind and name in a list.

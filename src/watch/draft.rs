@@ -5,10 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ajar_output::{OutputError, write_atomically};
 use serde::Deserialize;
 use toml::{Table, Value};
 
+use super::layer::written;
 use crate::session::is_scene_file;
 
 /// A value of a table that has a name.
@@ -44,7 +44,8 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    fn name(self) -> &'static str {
+    /// What scene files call it.
+    pub fn name(self) -> &'static str {
         match self {
             Self::Material => "material",
             Self::Node => "node",
@@ -55,7 +56,7 @@ impl Kind {
     }
 
     /// Tables of this kind as scene files have them: by name, or in a list where each says its name.
-    fn group(self, named: Vec<(String, Table)>) -> Value {
+    pub fn group(self, named: Vec<(String, Table)>) -> Value {
         let says_name = |(name, mut table): (String, Table)| {
             table.insert("name".into(), name.into());
             Value::Table(table)
@@ -82,11 +83,31 @@ pub(super) struct Draft {
     tables: BTreeMap<(Kind, String), Table>,
     /// The camera to look through.
     camera: Option<String>,
+    /// Whether everything is shown as if made of clay: a way to look at a scene, which no file says.
+    is_clay: bool,
 }
 
 impl Draft {
+    /// What it is called where it is read as a file.
+    pub const NAME: &str = "changes made on the page";
+
     pub fn is_empty(&self) -> bool {
         self.tables.is_empty() && self.camera.is_none()
+    }
+
+    /// Forgets all that could be saved.
+    pub fn clear(&mut self) {
+        *self = Self { is_clay: self.is_clay, ..Self::default() };
+    }
+
+    /// Whether everything is shown as if made of clay.
+    pub fn is_clay(&self) -> bool {
+        self.is_clay
+    }
+
+    /// Shows everything as if made of clay, or as it is.
+    pub fn show_clay(&mut self, show: bool) {
+        self.is_clay = show;
     }
 
     /// Adds a change, over those before.
@@ -117,6 +138,23 @@ impl Draft {
         named.flatten().filter_map(|name| name.as_str().map(str::to_owned)).collect()
     }
 
+    /// What is changed of the things of a kind, by their names.
+    pub fn named(&self, kind: Kind) -> impl Iterator<Item = (&str, &Table)> {
+        self.tables.iter().filter(move |((it, _), _)| *it == kind).map(|((_, name), table)| (&**name, table))
+    }
+
+    /// The table that chooses the camera, if one is chosen.
+    pub fn render(&self) -> Table {
+        let camera = self.camera.iter().map(|camera| ("camera".to_owned(), camera.as_str().into()));
+        let table: Table = camera.collect();
+        if table.is_empty() { table } else { Table::from_iter([("render".to_owned(), table.into())]) }
+    }
+
+    /// The camera to look through, if one is chosen.
+    pub fn camera(&self) -> Option<&str> {
+        self.camera.as_deref()
+    }
+
     /// As a scene file.
     pub fn text(&self) -> String {
         self.text_of(&[Kind::Import, Kind::Camera, Kind::Light, Kind::Material, Kind::Node])
@@ -124,50 +162,22 @@ impl Draft {
 
     /// Of these kinds.
     fn text_of(&self, kinds: &[Kind]) -> String {
-        let mut file = Table::new();
+        let mut file = self.render();
         for kind in kinds.iter().copied() {
-            let named = self.tables.iter().filter(|((it, _), _)| *it == kind);
-            let named: Vec<_> = named.map(|((_, name), table)| (name.clone(), table.clone())).collect();
+            let named: Vec<_> =
+                self.named(kind).map(|(name, table)| (name.to_owned(), table.clone())).collect();
             if !named.is_empty() {
                 file.insert(kind.name().into(), kind.group(named));
             }
         }
-        if let Some(camera) = &self.camera {
-            file.insert(
-                "render".into(),
-                Table::from_iter([("camera".to_owned(), camera.as_str().into())]).into(),
-            );
-        }
-        // Cannot fail: values come from TOML or JSON, and tables have names.
-        toml::to_string(&file).unwrap_or_default()
+        written(&file)
     }
 
-    /// As a scene file beside the one at `scene`, over which it lies.
-    fn layer(&self, scene: &Path) -> String {
-        let name = Value::from(scene.file_name().unwrap_or_default().to_string_lossy().into_owned());
-        if is_scene_file(scene) {
-            return format!("extends = {name}\n\n{}", self.text());
-        }
-        let variants = Value::from(self.variants());
-        let variant =
-            if self.variants().is_empty() { String::new() } else { format!("{VARIANT} = {variants}\n") };
-        format!("[[import]]\nfile = {name}\n{variant}\n{}", self.text_of(OVER_ASSETS))
-    }
-
-    /// Saves it at `path`, beside the `scene` over which it lies.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn save(&self, path: &Path, scene: &Path) -> Result<(), OutputError> {
-        let text = self.layer(scene);
-        write_atomically(path, |file| file.write_all(text.as_bytes()))
-    }
-
-    /// With the path that it would be saved at beside the `scene`, if there is something to save. Variants of an asset which
-    /// is no scene file are not in it.
-    pub fn at(&self, path: &Path, scene: &Path) -> Option<(PathBuf, String)> {
+    /// As a scene file over the `scene`, with a path beside it, if there is something. Variants of an asset which is no
+    /// scene file are not in it.
+    pub fn over(&self, scene: &Path) -> Option<(PathBuf, String)> {
         let text = || if is_scene_file(scene) { self.text() } else { self.text_of(OVER_ASSETS) };
-        (!self.is_empty()).then(|| (path.to_owned(), text()))
+        (!self.is_empty()).then(|| (scene.with_file_name(Self::NAME), text()))
     }
 }
 
@@ -198,26 +208,9 @@ mod tests {
     fn variants_are_those_of_an_import() {
         let mut draft = Draft::default();
         draft.show_variants("shoe", vec!["Red".into()]);
-        let read = |text: String| text.parse::<Table>().unwrap();
-        assert_eq!(read(draft.text())["import"][0]["name"].as_str(), Some("shoe"));
-        let over_scene = read(draft.layer(Path::new("a/scene.toml")));
-        assert_eq!(over_scene["import"][0]["variant"][0].as_str(), Some("Red"));
-        // An asset is imported once.
-        let over_asset = read(draft.layer(Path::new("a/shoe.glb")));
-        assert_eq!(over_asset["import"].as_array().unwrap().len(), 1);
-        assert_eq!(over_asset["import"][0]["file"].as_str(), Some("shoe.glb"));
-        assert_eq!(over_asset["import"][0]["variant"][0].as_str(), Some("Red"));
+        let read: Table = draft.text().parse().unwrap();
+        assert_eq!(read["import"][0]["name"].as_str(), Some("shoe"));
         assert_eq!(draft.variants(), ["Red"]);
-        assert_eq!(draft.at(Path::new("look.toml"), Path::new("shoe.glb")).unwrap().1, "");
-    }
-
-    #[test]
-    fn a_layer_names_what_it_lies_over() {
-        let mut draft = Draft::default();
-        draft.set(setting(Kind::Node, "Lamp", "light_scale", 2.0));
-        let over = |scene: &str| draft.layer(Path::new(scene)).parse::<Table>().unwrap();
-        assert_eq!(over("a/scene.toml")["extends"].as_str(), Some("scene.toml"));
-        assert_eq!(over("a/chair \"b\".glb")["import"][0]["file"].as_str(), Some("chair \"b\".glb"));
-        assert_eq!(over("a/scene.toml")["node"]["Lamp"]["light_scale"].as_float(), Some(2.0));
+        assert_eq!(draft.over(Path::new("a/shoe.glb")).unwrap().1, "");
     }
 }

@@ -1,18 +1,19 @@
 //! What pages ask for, done.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, time::Instant};
 
 use ajar_integrators::{Window, features::features};
 use ajar_live::server::Reply;
-use ajar_scene::{Cause, Diagnostic, Projection};
+use ajar_scene::{Diagnostic, Projection};
 use glam::DVec3;
 use serde_json::json;
 use toml::{Table, Value};
 
 use super::{
-    Phase, Watch,
+    Phase, View as Told, Watch,
     describe::{is_nameless, is_of_file},
     draft::{Draft, Kind},
+    layer,
     opened::Opened,
     page::{Request, View},
 };
@@ -21,7 +22,7 @@ use super::{
 const VIEW: &str = "view";
 
 impl Watch<'_> {
-    pub(super) fn answer(&mut self, request: Request, reply: &Reply) {
+    pub(super) fn answer(&mut self, request: Request, reply: &Reply, view: &mut dyn Told) {
         self.is_news = true;
         match request {
             Request::Stop {} if self.worker.is_some() => {
@@ -40,8 +41,11 @@ impl Watch<'_> {
                 self.edit(&what, |draft, _| draft.show_variants(import, variants));
             }
             Request::Set(setting) => self.edit(&setting.label(), |draft, _| draft.set(setting.clone())),
-            Request::Revert {} => self.edit("edits dropped", |draft, _| *draft = Draft::default()),
-            Request::Save {} => self.save(),
+            Request::Clay { show } => {
+                self.edit(if show { "clay" } else { "clay off" }, |draft, _| draft.show_clay(show));
+            }
+            Request::Revert {} => self.edit("edits dropped", |draft, _| draft.clear()),
+            Request::Save {} => self.save(view),
         }
     }
 
@@ -52,6 +56,8 @@ impl Watch<'_> {
         change(&mut self.draft, opened);
         if self.draft != before {
             self.state.changed = vec![what.to_owned()];
+            (self.state.saved, self.state.saved_without) = (None, Vec::new());
+            self.gesture.step(what, Instant::now());
             self.outdate();
         }
     }
@@ -67,35 +73,49 @@ impl Watch<'_> {
 
     fn probe(&self, x: u32, y: u32, reply: &Reply) {
         let Some((value, error)) = self.screen.pixel(x, y) else { return };
-        let found = self.opened.as_ref().map(|opened| what_is_at(opened, x, y)).unwrap_or_default();
         let answer = json!({
             "type": "probe", "x": x, "y": y,
             // JSON has no NaN; a page takes null for it.
-            "value": value, "error": error, "object": found[0], "material": found[1],
+            "value": value, "error": error,
+            "hit": self.opened.as_ref().and_then(|opened| what_is_at(opened, x, y)),
         });
         reply.send(answer.to_string());
     }
 
-    fn save(&mut self) {
-        match self.draft.save(&self.layer, self.subject.path()) {
-            Ok(()) => self.state.saved = Some(self.layer.display().to_string()),
-            Err(error) => {
-                self.state.errors = vec![Diagnostic::error(error.to_string()).because(Cause::System)];
+    fn save(&mut self, view: &mut dyn Told) {
+        let Some(opened) = &self.opened else { return };
+        let scene = self.subject.path();
+        let said = self.subject.said(&opened.camera.0.name);
+        match self.layer.save(scene, layer::text(&self.draft, scene, &said)) {
+            Ok(path) => {
+                self.state.saved = Some(path.display().to_string());
+                self.state.saved_without = said.not_in_layer(scene);
+                let mut note = Diagnostic::note("changes saved").in_file(path);
+                if !self.state.saved_without.is_empty() {
+                    note = note.hint(format!("it does not hold {}", self.state.saved_without.join(", ")));
+                }
+                view.say(&[note]);
             }
+            Err(error) => self.state.errors = vec![error],
         }
     }
 }
 
-/// Names of the object and of the material at a pixel.
-fn what_is_at(opened: &Opened, x: u32, y: u32) -> [Option<String>; 2] {
+/// Names of the object and of the material at a pixel, and where they are, if there is something.
+fn what_is_at(opened: &Opened, x: u32, y: u32) -> Option<serde_json::Value> {
     let world = &opened.world;
-    let hit = features(world, Window { x0: x, y0: y, x1: x + 1, y1: y + 1 });
-    let Some(hit) = hit.first().filter(|hit| hit.object > 0) else { return [None, None] };
+    let hits = features(world, Window { x0: x, y0: y, x1: x + 1, y1: y + 1 });
+    let hit = hits.first().filter(|hit| hit.object > 0)?;
     let instance = world.instances().get(hit.object as usize - 1);
-    let object = instance.and_then(|it| world.scene.nodes.get(it.node)).map(|node| node.name.clone());
+    let object = instance.and_then(|it| world.scene.nodes.get(it.node)).map(|node| &node.name);
     let material =
         hit.material.checked_sub(1).and_then(|index| world.scene.materials.iter().nth(index as usize));
-    [object, material.map(|material| material.name.clone())]
+    Some(json!({
+        "object": object,
+        "material": material.map(|material| &material.name),
+        "depth": hit.depth,
+        "normal": hit.normal.to_array(),
+    }))
 }
 
 /// The point that the camera turns about: what is in the middle of the image, else where it is in focus.

@@ -17,15 +17,16 @@ impl Watch<'_> {
     /// The render at work has ended by itself.
     pub(super) fn end_image(&mut self, view: &mut dyn View) {
         let Some(worker) = self.worker.take() else { return };
-        let rendered = worker.end();
+        let resting = worker.rest();
         let Some(opened) = &self.opened else { return };
         self.state.phase = Phase::Stopped;
         self.is_news = true;
-        let Some(rendered) = rendered else {
+        let Some(resting) = resting else {
             let fault = "rendering failed in a way that is a fault of this program";
             self.state.errors = vec![Diagnostic::error(fault).because(Cause::System)];
             return view.say(&self.state.errors);
         };
+        let rendered = &resting.rendered;
         self.state.status(&rendered.status, &opened.plan);
         if rendered.reason.is_some() {
             self.state.phase = Phase::Done;
@@ -33,7 +34,7 @@ impl Watch<'_> {
             // Part of an image is for those who look at it.
             let is_wanted = self.subject.wants_images() && self.region.is_none();
             let output = opened.output.as_ref().filter(|_| is_wanted);
-            match output.map(|output| write(opened, output, &rendered)).transpose() {
+            match output.map(|output| write(opened, output, rendered)).transpose() {
                 Ok(notes) => {
                     view.say(&notes.unwrap_or_default());
                     view.finish(&self.state, output.map(|output| &output.to));
@@ -44,7 +45,7 @@ impl Watch<'_> {
                 }
             }
         }
-        self.resting = Some(rendered);
+        self.resting = Some(resting);
     }
 }
 

@@ -6,11 +6,15 @@
 
 mod archive;
 mod change;
+mod clay;
 mod describe;
 mod draft;
 mod edits;
 mod finished;
+mod gesture;
+mod glance;
 mod imports;
+mod layer;
 mod opened;
 mod page;
 mod screen;
@@ -19,6 +23,7 @@ mod state;
 mod views;
 mod worker;
 
+pub use layer::Said;
 pub use state::{Label, Phase, State};
 
 use std::{
@@ -41,25 +46,31 @@ use ajar_live::{
 use ajar_scene::{Diagnostic, SceneFile};
 
 use crate::{
-    image::Destination,
+    image::{Destination, Form},
     plan::Plan,
-    session::{Reading, Rendered, Status},
+    session::Reading,
 };
 use archive::Archive;
 use draft::Draft;
+use gesture::Gesture;
 use imports::Imports;
+use layer::Layer;
 use opened::{Opened, names};
 use page::{Pages, Request};
 use screen::Screen;
 use snapshots::Snapshots;
 use views::Views;
-use worker::Worker;
+use worker::{News, Resting, Worker};
 
 /// How long the interrupt of a user may go unnoticed.
 const TICK: Duration = Duration::from_millis(100);
 
 /// Shortest time between two words of one image.
 const INTERVAL: Duration = Duration::from_millis(50);
+
+/// How long after word of a file its writer may not be through: half a second after it began, of which the watcher took its
+/// part until it was still.
+const DOUBT: Duration = Duration::from_millis(440);
 
 /// What is watched, and how it is to be rendered.
 pub trait Subject {
@@ -87,11 +98,20 @@ pub trait Subject {
     /// Whether finished images are written.
     fn wants_images(&self) -> bool;
 
+    /// Their form.
+    ///
+    /// # Errors
+    /// It makes no sense.
+    fn form(&self, file: &SceneFile) -> Result<Form, Diagnostic>;
+
     /// Where they are written.
     ///
     /// # Errors
     /// It makes no sense.
     fn destination(&self, file: &SceneFile) -> Result<Destination, Diagnostic>;
+
+    /// What the command line says about its look, where the camera that is looked through has this name.
+    fn said(&self, camera: &str) -> Said;
 
     /// Bytes that decoded textures may take.
     fn memory_limit(&self) -> u64;
@@ -138,10 +158,8 @@ enum Event {
     Files(BTreeSet<PathBuf>),
     /// A page wants something.
     Page(Request, Reply),
-    /// The render of this number has finished a round.
-    Round(u64, Status),
-    /// The render of this number has ended.
-    End(u64),
+    /// News of the render of this number.
+    Render(u64, News),
     /// Something about files that were written.
     Said(Diagnostic),
 }
@@ -166,7 +184,7 @@ pub struct Watch<'a> {
     /// The render of it that is at work.
     worker: Option<Worker>,
     /// The render of it that is not at work.
-    resting: Option<Rendered>,
+    resting: Option<Resting>,
     /// Number of the worker.
     number: u64,
     /// Files that matter.
@@ -175,11 +193,14 @@ pub struct Watch<'a> {
     changed: BTreeSet<PathBuf>,
     /// Whether the scene has to be read again.
     is_stale: bool,
+    /// Until when what cannot be read may be a file that is being written.
+    doubt: Option<Instant>,
+    gesture: Gesture,
     draft: Draft,
     /// The changes that the scene was read with.
     sound_draft: Draft,
-    /// Where changes are saved.
-    layer: PathBuf,
+    /// Where changes were saved.
+    layer: Layer,
     region: Option<Window>,
     /// Whether the render goes on beyond what was asked for.
     is_endless: bool,
@@ -202,7 +223,7 @@ impl<'a> Watch<'a> {
         let sender = events.0.clone();
         let watcher = Watcher::new(options.poll, move |files| drop(sender.send(Event::Files(files))))?;
         let stage = Stage::default();
-        let screen = Arc::new(Screen::new(stage.clone(), options.tev));
+        let screen = Arc::new(Screen::new(stage.clone(), options.tev, events.0.clone()));
         let archive = options.snapshots.map(|folder| Archive::start(folder, events.0.clone())).transpose()?;
         Ok(Self {
             subject,
@@ -223,9 +244,11 @@ impl<'a> Watch<'a> {
             files: BTreeSet::new(),
             changed: BTreeSet::new(),
             is_stale: true,
+            doubt: None,
+            gesture: Gesture::default(),
             draft: Draft::default(),
             sound_draft: Draft::default(),
-            layer: opened::layer_beside(subject.path()),
+            layer: Layer::default(),
             region: None,
             is_endless: false,
             about: "{}".into(),
@@ -290,23 +313,31 @@ impl<'a> Watch<'a> {
             Event::Files(files) => {
                 self.state.changed = names(&files);
                 self.imports.forget(&files);
+                self.gesture.end();
+                self.doubt.get_or_insert_with(|| Instant::now() + DOUBT);
                 self.changed.extend(files);
                 self.outdate();
             }
             Event::Page(request, reply) => {
                 self.waiting.fetch_sub(1, Ordering::Relaxed);
-                self.answer(request, &reply);
+                self.answer(request, &reply, view);
             }
-            Event::Round(number, status) if number == self.number => {
-                if let Some(opened) = &self.opened {
-                    self.state.status(&status, &opened.plan);
-                    self.is_news = true;
-                }
-            }
-            Event::End(number) if number == self.number && self.worker.is_some() => self.end_image(view),
+            Event::Render(number, news) if number == self.number => self.learn(news, view),
             Event::Said(message) => view.say(&[message]),
-            Event::Round(..) | Event::End(_) => {}
+            // Of a render before.
+            Event::Render(..) => {}
         }
+    }
+
+    fn learn(&mut self, news: News, view: &mut dyn View) {
+        let Some(opened) = &self.opened else { return };
+        match news {
+            News::Glance(samples) => self.state.samples = samples,
+            News::Round(status) => self.state.status(&status, &opened.plan),
+            News::End if self.worker.is_some() => return self.end_image(view),
+            News::End => {}
+        }
+        self.is_news = true;
     }
 
     /// What is rendered is not what there is.

@@ -3,7 +3,7 @@
 use std::{
     collections::BTreeSet,
     panic::{AssertUnwindSafe, catch_unwind},
-    path::{Path, PathBuf},
+    path::PathBuf,
     sync::Arc,
 };
 
@@ -14,9 +14,9 @@ use ajar_render::{
 use ajar_scene::{Camera, Cause, Diagnostic, Looked, SceneFile, Setting, VariedImport};
 use glam::DAffine3;
 
-use super::{Subject, describe, imports::Imports};
+use super::{Subject, clay, describe, imports::Imports};
 use crate::{
-    image::Destination,
+    image::{Destination, Form},
     plan::Plan,
     session::{self, Reading},
 };
@@ -29,6 +29,8 @@ pub(super) struct Opened {
     pub plan: Plan,
     /// Where finished images go, if they are wanted.
     pub output: Option<Output>,
+    /// The form in which images are written.
+    pub form: Form,
     /// Every value that scene files said, and who.
     pub settings: Vec<Setting>,
     /// The imports that have variants.
@@ -52,8 +54,12 @@ pub(super) struct Desk<'a> {
     pub imports: &'a Imports,
     /// Path and text of a scene file that lies over everything.
     pub draft: Option<(PathBuf, String)>,
+    /// The camera that pages look through, if they chose one.
+    pub camera: Option<&'a str>,
     /// Variants of the asset, where it is one.
     pub variants: Vec<String>,
+    /// Whether everything is to look as if made of clay.
+    pub is_clay: bool,
     /// Whether something will be written of the scene.
     pub wants_output: bool,
     /// The scene before, and the files that changed since.
@@ -90,6 +96,9 @@ impl Desk<'_> {
         let (variants, looked) = (self.variants.clone(), looked.clone());
         let reading = Reading { draft, variants, looked: looked.clone(), import: &import };
         let mut file = subject.open(&reading)?;
+        if self.is_clay {
+            clay::cover(&mut file.scene);
+        }
         let hash = self.wants_output.then(|| file.scene.content_hash());
         let lights = describe::lights(&file.scene, &file.settings);
         let cameras = file.scene.cameras.len();
@@ -98,9 +107,11 @@ impl Desk<'_> {
         file.files.iter().for_each(|file| looked.note(file));
         messages.extend(file.diagnostics.iter().cloned());
         let plan = subject.plan(&file).map_err(|d| vec![d])?;
+        let form = subject.form(&file).map_err(|d| vec![d])?;
         let output = hash.map(|hash| subject.destination(&file).map(|to| Output { to, hash }));
         let output = output.transpose().map_err(|d| vec![d])?;
-        let id = session::choose_camera(&file.scene, subject.camera(&file)).map_err(|d| vec![d])?;
+        let id = session::choose_camera(&file.scene, self.camera.or(subject.camera(&file)))
+            .map_err(|d| vec![d])?;
         let camera = (file.scene.cameras[id.0].clone(), id.1);
         let SceneFile { scene, settings, varied, .. } = file;
         let options = PrepareOptions { camera: id, size: plan.size, texture_memory: subject.memory_limit() };
@@ -108,7 +119,7 @@ impl Desk<'_> {
         let prepared = prepare_after(scene, &options, previous);
         let (world, warnings) = prepared.map_err(|d| session::about(path, d))?;
         messages.extend(session::about(path, warnings));
-        Ok(Opened { world: Arc::new(world), camera, plan, output, settings, varied, lights, is_framed })
+        Ok(Opened { world: Arc::new(world), camera, plan, output, form, settings, varied, lights, is_framed })
     }
 }
 
@@ -117,11 +128,4 @@ pub(super) fn names<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Vec<Str
     let name = |path: &'a PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let names: BTreeSet<_> = paths.into_iter().filter_map(name).collect();
     names.into_iter().collect()
-}
-
-/// A free name for a scene file beside this one.
-pub(super) fn layer_beside(path: &Path) -> PathBuf {
-    let name = |n: u32| if n == 1 { "look.toml".to_owned() } else { format!("look-{n}.toml") };
-    let mut names = (1..).map(|n| path.with_file_name(name(n)));
-    names.find(|layer| !layer.exists()).unwrap_or_else(|| path.with_file_name("look.toml"))
 }

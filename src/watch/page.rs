@@ -39,6 +39,8 @@ pub(super) enum Request {
     Variants { import: String, variants: Vec<String> },
     /// Change a value.
     Set(draft::Setting),
+    /// Show everything as if made of clay, or as it is.
+    Clay { show: bool },
     /// Drop all changes that pages made.
     Revert {},
     /// Save them as a layer.

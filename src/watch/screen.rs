@@ -1,9 +1,15 @@
 //! What is seen of renders: by pages, by tev, and by who asks for a pixel.
 
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::{
+    io,
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc::Sender},
+};
 
 use ajar_integrators::Window;
 use ajar_live::{frame::Frame, server::Stage, tev::Tev};
+use ajar_scene::Diagnostic;
+
+use super::Event;
 
 /// Pixels of linear RGB, rows from the top.
 pub(super) type Pixels = Vec<[f32; 3]>;
@@ -38,8 +44,9 @@ struct Picture {
 }
 
 impl Screen {
-    pub fn new(stage: Stage, tev: Option<Tev>) -> Self {
-        Self { picture: Mutex::default(), stage, tev: tev.map(Mailbox::start) }
+    /// What is to be said about tev becomes an event.
+    pub fn new(stage: Stage, tev: Option<Tev>, events: Sender<Event>) -> Self {
+        Self { picture: Mutex::default(), stage, tev: tev.map(|tev| Mailbox::start(tev, events)) }
     }
 
     /// Shows an image; a part lies over what was shown before.
@@ -113,10 +120,11 @@ struct Mailbox {
 }
 
 impl Mailbox {
-    fn start(mut tev: Tev) -> Arc<Self> {
+    fn start(mut tev: Tev, events: Sender<Event>) -> Arc<Self> {
         let mailbox = Arc::<Self>::default();
         let weak = Arc::downgrade(&mailbox);
         std::thread::spawn(move || {
+            let mut is_away = false;
             while let Some(mailbox) = weak.upgrade() {
                 let mut next = lock(&mailbox.next);
                 while next.is_none() {
@@ -124,8 +132,12 @@ impl Mailbox {
                 }
                 let Some(([width, height], pixels)) = next.take() else { continue };
                 drop(next);
-                // It may not run yet; the next image tries again.
-                let _ = tev.show(width, height, &pixels);
+                let shown = tev.show(width, height, &pixels);
+                if let Some(message) = news(&tev, &shown, is_away) {
+                    // Who hears it may have ended.
+                    let _ = events.send(Event::Said(message));
+                }
+                is_away = shown.is_err();
             }
         });
         mailbox
@@ -134,6 +146,21 @@ impl Mailbox {
     fn put(&self, size: [usize; 2], pixels: &[[f32; 3]]) {
         *lock(&self.next) = Some((size, pixels.to_vec()));
         self.filled.notify_one();
+    }
+}
+
+/// What is to be said where tev goes or comes.
+fn news(tev: &Tev, shown: &io::Result<()>, was_away: bool) -> Option<Diagnostic> {
+    let address = tev.address();
+    match shown {
+        Err(error) if !was_away => {
+            let warning = Diagnostic::warning(format!("tev at {address} cannot be reached: {error}"));
+            Some(warning.element("--tev").hint("start it; the next image tries again"))
+        }
+        Ok(()) if was_away => {
+            Some(Diagnostic::note(format!("tev at {address} shows the image")).element("--tev"))
+        }
+        _ => None,
     }
 }
 

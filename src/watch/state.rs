@@ -47,7 +47,7 @@ pub struct State {
     pub window: [u32; 4],
     /// Finished rounds.
     pub rounds: u64,
-    /// Eye samples a pixel.
+    /// Eye samples a pixel; where no round is finished yet, those of the eye paths that are shown until then.
     pub samples: u64,
     /// Seconds since the first round began.
     pub seconds: f64,
@@ -59,12 +59,18 @@ pub struct State {
     pub noise: Option<f64>,
     /// Of the typical pixel in the worst tile.
     pub worst_tile: Option<f64>,
+    /// Contributions of light left out because they were negative or not finite.
+    pub rejected: u64,
     /// Images of before that can be compared with, the oldest first.
     pub snapshots: Vec<Label>,
     /// What pages changed, as a scene file.
     pub edits: String,
-    /// The file that these were saved to.
+    /// Whether everything is shown as if made of clay.
+    pub is_clay: bool,
+    /// The file that these are saved to, as they are.
     pub saved: Option<String>,
+    /// Options of the command line that this file cannot say.
+    pub saved_without: Vec<String>,
 }
 
 /// An image of before.
@@ -89,6 +95,7 @@ impl State {
         (self.rounds, self.samples, self.done) = (status.rounds, status.samples, done);
         self.seconds = status.elapsed.as_secs_f64();
         self.seconds_left = time_left(status, done).map(|left| left.as_secs_f64());
+        self.rejected = status.rejected;
         self.noise = status.noise.map(|noise| noise.typical);
         self.worst_tile = status.noise.map(|noise| noise.worst_tile);
     }

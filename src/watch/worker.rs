@@ -3,31 +3,30 @@
 use std::{
     sync::{
         Arc,
-        atomic::{AtomicBool, Ordering},
-        mpsc::Sender,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+        mpsc::{Receiver, Sender, channel},
     },
-    thread::JoinHandle,
+    thread,
     time::{Duration, Instant},
 };
 
-use ajar_integrators::{
-    Integrator, Rounds, Settings, Window, integrators,
-    stop::{Reason, StopRules},
-};
+use ajar_integrators::{Context, Rounds, stop::StopRules};
 use ajar_render::{World, film::Film};
 
 use super::{
     Event,
+    glance::MoreGlances,
     screen::{Screen, Shot},
 };
 use crate::{
     plan::Plan,
-    session::{self, Rendered, Start, Status},
+    session::{self, Leg, Rendered, Status},
     shard::Shard,
 };
 
-/// The first image has this many times fewer columns and rows.
-const COARSE: u32 = 4;
+#[cfg(test)]
+mod tests;
+
 /// Shortest time between two images.
 const INTERVAL: Duration = Duration::from_millis(100);
 /// The share of the time that showing images may take: one in so many.
@@ -39,79 +38,146 @@ pub(super) struct Job {
     /// The camera and its place.
     pub camera: (ajar_scene::Camera, glam::DAffine3),
     pub plan: Plan,
-    /// Rounds there are already, and the time they took.
-    pub done: Option<(Film, Duration)>,
+    /// Whether somebody waits to see something before the first round.
+    pub wants_glances: bool,
 }
 
-/// A render at work, or one that has ended.
+/// What is told of a render.
+#[derive(Debug)]
+pub(super) enum News {
+    /// An image of so many eye samples a pixel is shown until there is a round.
+    Glance(u64),
+    /// A round is finished.
+    Round(Status),
+    /// It rests, or has failed.
+    End,
+}
+
+/// To go on from there.
+struct Order {
+    number: u64,
+    rules: StopRules,
+    done: (Film, Duration),
+}
+
+/// A render at work, or one that rests: its thread keeps what was prepared. It ends when dropped.
 pub(super) struct Worker {
     cancel: Arc<AtomicBool>,
-    thread: JoinHandle<Rendered>,
+    /// Raised where there is no more need of glances.
+    is_seen: Arc<AtomicBool>,
+    orders: Sender<Order>,
+    rested: Receiver<Rendered>,
+}
+
+/// A render that rests, and who can go on with it.
+pub(super) struct Resting {
+    pub rendered: Rendered,
+    worker: Worker,
 }
 
 impl Worker {
     /// Begins. `number` is what its events are called.
     pub fn start(number: u64, job: Job, screen: Arc<Screen>, events: Sender<Event>) -> std::io::Result<Self> {
-        let cancel = Arc::new(AtomicBool::new(false));
-        let cancelled = Arc::clone(&cancel);
-        let thread = std::thread::Builder::new().name("render".into()).spawn(move || {
+        let (orders, ordered) = channel();
+        let (rests, rested) = channel();
+        let [cancel, is_seen] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
+        let flags = [Arc::clone(&cancel), Arc::clone(&is_seen)];
+        let work = Arc::new(Work { job, screen, events, number: AtomicU64::new(number) });
+        thread::Builder::new().name("render".into()).spawn(move || {
             // Also when a panic ends it.
-            let _end = End(number, events.clone());
-            let told = |status: &Status| drop(events.send(Event::Round(number, *status)));
-            Work { job: &job, screen: &screen, cancel: &cancelled }.run(told)
+            let _end = End(&work);
+            work.run(&flags, ordered, &rests);
         })?;
-        Ok(Self { cancel, thread })
+        Ok(Self { cancel, is_seen, orders, rested })
     }
 
-    /// Asks it to end at once.
+    /// Asks it to rest at once.
     pub fn cancel(&self) {
         self.cancel.store(true, Ordering::Relaxed);
+        self.is_seen.store(true, Ordering::Relaxed);
     }
 
-    /// Ends it; `None` if it failed.
-    pub fn end(self) -> Option<Rendered> {
+    /// Waits until it rests; `None` if it failed.
+    pub fn rest(self) -> Option<Resting> {
         self.cancel();
-        self.thread.join().ok()
+        let rendered = self.rested.recv().ok()?;
+        Some(Resting { rendered, worker: self })
     }
 }
 
-struct End(u64, Sender<Event>);
+impl Resting {
+    /// Goes on until one of the rules holds, with what is prepared; `None` if that never was. `number` is what its events
+    /// are called from now on.
+    pub fn go_on(self, number: u64, rules: StopRules) -> Option<Worker> {
+        let Self { rendered, worker } = self;
+        worker.cancel.store(false, Ordering::Relaxed);
+        let done = (rendered.film, rendered.status.elapsed);
+        worker.orders.send(Order { number, rules, done }).is_ok().then_some(worker)
+    }
+}
 
-impl Drop for End {
+/// A render and those who are told of it.
+pub(super) struct Work {
+    pub job: Job,
+    pub screen: Arc<Screen>,
+    events: Sender<Event>,
+    number: AtomicU64,
+}
+
+struct End<'a>(&'a Work);
+
+impl Drop for End<'_> {
     fn drop(&mut self) {
-        let _ = self.1.send(Event::End(self.0));
+        self.0.tell(News::End);
     }
 }
 
-struct Work<'a> {
-    job: &'a Job,
-    screen: &'a Screen,
-    cancel: &'a AtomicBool,
-}
+impl Work {
+    pub fn tell(&self, news: News) {
+        // Who hears it may have ended.
+        let _ = self.events.send(Event::Render(self.number.load(Ordering::Relaxed), news));
+    }
 
-impl Work<'_> {
-    fn run(&self, told: impl Fn(&Status)) -> Rendered {
-        let Job { world, plan, done, .. } = self.job;
-        if done.is_none() {
-            self.preview();
-        }
+    fn run(
+        self: &Arc<Self>,
+        [cancel, is_seen]: &[Arc<AtomicBool>; 2],
+        orders: Receiver<Order>,
+        rests: &Sender<Rendered>,
+    ) {
+        let Job { world, plan, .. } = &self.job;
+        let cx = Context { world, settings: &plan.settings, cancel };
+        let glance = if self.job.wants_glances { self.glance(cancel) } else { None };
+        let mut glances = glance.map(|done| MoreGlances::start(Arc::clone(self), done, is_seen));
+        let mut leg = Leg::begin(world, &plan.settings, None);
+        let mut rules = plan.rules;
+        let prepared = plan.integrator.prepare(cx);
+        // What was prepared in part is worth nothing.
+        let orders = if cx.cancelled() { None } else { Some(orders) };
         let mut pace = Pace::new();
-        let start = Start { shard: Shard::WHOLE, done: done.clone() };
-        let each_round = |film: &Film, status: &Status, _: &dyn Rounds| {
-            told(status);
-            pace.keep(|| self.show(film));
-        };
-        let (integrator, settings) = (plan.integrator, &plan.settings);
-        let rendered =
-            session::render(world, integrator, settings, &plan.rules, start, self.cancel, each_round);
-        if rendered.film.rounds() > 0 {
-            self.show(&rendered.film);
+        loop {
+            let each_round = |film: &Film, status: &Status, _: &dyn Rounds| {
+                glances = None;
+                self.tell(News::Round(*status));
+                pace.keep(|| self.show(film));
+            };
+            let rendered = session::advance(&*prepared, cx, &rules, Shard::WHOLE, leg, each_round);
+            glances = None;
+            if rendered.film.rounds() > 0 {
+                self.show(&rendered.film);
+            }
+            // Who gets it may have ended.
+            let _ = rests.send(rendered);
+            self.tell(News::End);
+            let Some(Ok(order)) = orders.as_ref().map(Receiver::recv) else { return };
+            self.number.store(order.number, Ordering::Relaxed);
+            rules = order.rules;
+            leg = Leg::begin(world, &plan.settings, Some(order.done));
         }
-        rendered
     }
 
-    fn show(&self, film: &Film) {
-        let Job { plan, camera, .. } = self.job;
+    /// Shows what is rendered so far.
+    pub fn show(&self, film: &Film) {
+        let Job { plan, camera, .. } = &self.job;
         let exposure = f64::from(camera.0.exposure);
         let errors = |p| film.variance_of_mean(p).map(|v| v.sqrt() * exposure).as_vec3().to_array();
         self.screen.show(Shot {
@@ -121,54 +187,21 @@ impl Work<'_> {
             errors: Some((0..film.pixels()).map(errors).collect()),
         });
     }
-
-    /// What can be seen soon: one eye path a pixel, first of few pixels, then of all.
-    fn preview(&self) {
-        let Job { world, camera, plan, .. } = self.job;
-        let window = plan.settings.window;
-        let size = plan.size.map(|n| n.div_ceil(COARSE));
-        if [window.width(), window.height()] == plan.size {
-            let coarse = world.seen_by(&camera.0, &camera.1, size);
-            let all = Window { x0: 0, y0: 0, x1: size[0], y1: size[1] };
-            if let Some(pixels) = self.glance(&coarse, all) {
-                self.screen.show_coarse(size, &pixels);
-            }
-        }
-        if let Some(pixels) = self.glance(world, window) {
-            self.screen.show(Shot { size: plan.size, window, pixels, errors: None });
-        }
-    }
-
-    fn glance(&self, world: &World, window: Window) -> Option<Vec<[f32; 3]>> {
-        let Plan { settings, .. } = &self.job.plan;
-        let settings = Settings { window, samples_per_round: 1, ..settings.clone() };
-        let rules = StopRules { rounds: Some(1), ..StopRules::default() };
-        let start = Start { shard: Shard::WHOLE, done: None };
-        let rendered =
-            session::render(world, eye_paths()?, &settings, &rules, start, self.cancel, |_, _, _| ());
-        let is_whole = rendered.reason == Some(Reason::Rounds);
-        is_whole.then(|| pixels(&rendered.film, self.job.camera.0.exposure.into()))
-    }
 }
 
-/// The integrator that is the first to have something to show.
-fn eye_paths() -> Option<&'static dyn Integrator> {
-    integrators().iter().copied().find(|integrator| integrator.name() == "path")
-}
-
-fn pixels(film: &Film, exposure: f64) -> Vec<[f32; 3]> {
+pub(super) fn pixels(film: &Film, exposure: f64) -> Vec<[f32; 3]> {
     (0..film.pixels()).map(|p| (film.mean(p) * exposure).as_vec3().to_array()).collect()
 }
 
 /// Sees to it that showing takes little of the time.
-struct Pace(Instant);
+pub(super) struct Pace(Instant);
 
 impl Pace {
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self(Instant::now())
     }
 
-    fn keep(&mut self, show: impl FnOnce()) {
+    pub fn keep(&mut self, show: impl FnOnce()) {
         let began = Instant::now();
         if began >= self.0 {
             show();

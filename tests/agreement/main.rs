@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, reason = "a failing test panics")]
 
 mod blocks;
+mod door;
 mod formats;
 
 use std::path::Path;

@@ -17,7 +17,7 @@ fn what_the_command_line_gets_wrong_is_2() {
         ("render leaf.gltf --time soon", "--time"),
         ("render leaf.gltf --crop 0,2,0,1", "--crop"),
         ("render leaf.gltf --crop 0,1,0,1 --pixel-bounds 0,1,0,1", "cannot be used with"),
-        ("render leaf.gltf --pixel-bounds 2000,2001,0,1", "no pixel"),
+        ("render leaf.gltf --pixel-bounds 2000,2001,0,1", "the image at 1280, 720"),
         ("render leaf.gltf --integrator photon", "bdpt"),
         ("render leaf.gltf --aov colour", "albedo"),
         ("render leaf.gltf --tone-map filmic", "agx"),
@@ -65,12 +65,21 @@ fn mistakes_in_a_scene_file_have_line_column_and_advice() {
         ("spp = 4", "spp = 0", ["scene.toml:23:7: error: ", "spp"]),
         ("box.obj", "bax.obj", ["scene.toml:3:8: error: ", "bax.obj"]),
         ("spp = 4", "spp = ", ["scene.toml:23:", "error: "]),
-        ("spp = 4", "integrator = \"photon\"", ["photon", "bdpt"]),
+        ("spp = 4", "integrator = \"photon\"", ["scene.toml:23:14: error: render.integrator: ", "bdpt"]),
+        ("spp = 4", "max_depth = 5000", ["scene.toml:23:13: error: render.max_depth: ", "5000"]),
+        ("spp = 4", "mutations = { lans = 1 }", ["scene.toml:23:", "lens"]),
+        ("spp = 4", "[output]\ntone_map = \"fimlic\"", ["scene.toml:24:12: error: output.tone_map: ", "agx"]),
+        ("spp = 4", "[output]\naov = [\"nrm\"]", ["scene.toml:24:7: error: output.aov: ", "normal"]),
+        ("spp = 4", "[output]\npath = \"a.png\"", ["scene.toml:24:8: error: output.path: ", ".exr"]),
+        ("spp = 4", "[output]\npng = \"../a.png\"", ["scene.toml:24:7: error: output.png: ", "-o"]),
+        ("spp = 4", "[output]\npath = \"/tmp/a.exr\"", ["scene.toml:24:8: error: output.path: ", "-o"]),
+        ("\"top\"", "\"main\"", ["scene.toml:11:8: error: camera[1].name: ", "another camera"]),
     ] {
         assert!(SCENE.contains(good), "{good}");
         bench.write("kitchen/scene.toml", SCENE.replacen(good, bad, 1));
-        let code = if bad.contains("photon") { 2 } else { 3 };
-        bench.run("render kitchen/scene.toml").exits(code).says(&says);
+        for command in ["render", "validate"] {
+            bench.run(&format!("{command} kitchen/scene.toml")).exits(3).says(&says);
+        }
     }
     assert_eq!(bench.files(), ["kitchen", "leaf.gltf"], "nothing is written");
 }
@@ -82,6 +91,47 @@ fn an_output_that_cannot_be_written_is_1() {
         .run("render leaf.gltf --size 8x8 --spp 1 -o leaf.gltf/out.exr")
         .exits(1)
         .says(&["leaf.gltf", "cannot write"]);
+}
+
+#[test]
+fn images_take_nothing_else_s_place() {
+    let bench = Bench::new();
+    bench.write("own.glb", bench.glb());
+    bench.write("shot.exr", "precious");
+    let small = "--size 8x8 --spp 1";
+    for output in ["x.png", "own.glb", "x"] {
+        bench.run(&format!("render own.glb {small} -o {output}")).exits(2).says(&[".exr"]);
+    }
+    bench.write(
+        "kitchen/scene.toml",
+        format!("{SCENE}\n[material.\"*\"]\nbase_color_texture = \"../shot.exr\"\n"),
+    );
+    let over = format!("render kitchen/scene.toml {small} --allow . -o shot.exr");
+    bench.run(&over).exits(2).says(&["shot.exr: error: ", "a file of the scene"]);
+    assert_eq!(fs::read_to_string(bench.path("shot.exr")).unwrap(), "precious");
+    assert_eq!(fs::read(bench.path("own.glb")).unwrap(), bench.glb());
+}
+
+#[test]
+fn an_image_that_takes_too_much_memory_is_4() {
+    let bench = Bench::new();
+    bench.write("kitchen/scene.toml", SCENE.replace("[24, 16]", "[65535, 65535]"));
+    for command in ["render", "validate"] {
+        let says = ["scene.toml:22:8: error: render.size: 65535x65535 pixels", "--memory-limit"];
+        bench.run(&format!("{command} kitchen/scene.toml")).exits(4).says(&says);
+    }
+    bench.run("render leaf.gltf --size 60000x60000").exits(4).says(&["60000x60000 pixels"]);
+    let part = "--pixel-bounds 10,18,10,18 --spp 1 -o part.exr";
+    bench.run(&format!("render kitchen/scene.toml {part}")).exits(0);
+    bench.run("render leaf.gltf --size 8x8 --pixel-bounds 0,9,0,8").exits(2).says(&["8, 8"]);
+}
+
+#[test]
+fn numbers_out_of_range_are_2() {
+    let bench = Bench::new();
+    for flag in ["--noise 0", "--noise 0%", "--exposure nan", "--exposure inf"] {
+        bench.run(&format!("render leaf.gltf {flag}")).exits(2).says(&[flag.split_once(' ').unwrap().0]);
+    }
 }
 
 #[test]

@@ -10,3 +10,4 @@ from ajar_tools.settings import Settings, SettingsError
 from ajar_tools.verdict import Outcome, Verdict
 
 __all__ = ["CannotCompareError", "Outcome", "Picture", "Settings", "SettingsError", "Verdict", "compare", "read"]
+__version__ = "0.1.0"

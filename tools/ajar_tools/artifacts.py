@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import html
 import json
+import os
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 from ajar_tools.settings import Settings
 from ajar_tools.verdict import Outcome, Verdict
+
+if TYPE_CHECKING:
+    import pytest
 
 MARKER = ".ajar-artifacts"
 PAGE = """<!doctype html><meta charset="utf-8"><meta name="viewport" content="width=device-width">
@@ -20,7 +25,7 @@ body {{ font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 60re
 table {{ border-collapse: collapse; width: 100% }}
 td, th {{ padding: .4rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd }}
 img {{ max-width: 100%; min-height: 5rem; margin-top: .4rem; image-rendering: pixelated }}
-.pass {{ color: #176b2c }} .fail, .cannot {{ color: #b3261e; font-weight: 600 }}
+.pass {{ color: #176b2c }} .fail, .cannot {{ color: #b3261e; font-weight: 600 }} .review {{ color: #1f4e79 }}
 </style>
 <h1>{title}</h1><p>{lead}</p>
 <table><tr><th>case<th>result<th>what was found</tr>{rows}</table>
@@ -80,11 +85,22 @@ class Artifacts:
 
 def row(verdict: dict[str, Any]) -> str:
     """A case in the table."""
-    name = html.escape(verdict["case"])
+    name, folder = html.escape(verdict["case"]), quote(verdict["case"])
     picture = ""
     if verdict["strip"]:
-        picture = f'<br><img src="{name}/{verdict["strip"]}" alt="reference, new image and difference">'
+        picture = f'<br><img src="{folder}/{verdict["strip"]}" alt="reference, new image and difference">'
     if verdict["report"]:
-        name, picture = (f'<a href="{name}/{verdict["report"]}">{text}</a>' for text in (name, picture))
-    outcome = verdict["outcome"]
-    return f'<tr><td>{name}<td class="{outcome}">{outcome}<td>{html.escape(verdict["headline"])}{picture}</tr>'
+        name, picture = (f'<a href="{folder}/{verdict["report"]}">{text}</a>' for text in (name, picture))
+    kind, word = ("review", verdict["review"]) if verdict["review"] else (verdict["outcome"],) * 2
+    return f'<tr><td>{name}<td class="{kind}">{word}<td>{html.escape(verdict["headline"])}{picture}</tr>'
+
+
+def artifacts_of(config: pytest.Config) -> Artifacts:
+    """The folder of a run."""
+    return Artifacts((config.invocation_params.dir / config.getoption("--ajar-artifacts")).resolve())
+
+
+def shown(path: Path) -> str:
+    """A path relative to the current folder where that is shorter."""
+    relative = os.path.relpath(path)
+    return str(path) if relative.startswith("..") else relative

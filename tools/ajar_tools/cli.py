@@ -11,9 +11,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from ajar_tools import __version__
 from ajar_tools.comparison import compare
-from ajar_tools.junit import annotation, junit
-from ajar_tools.settings import Settings, SettingsError, load
+from ajar_tools.junit import annotation, junit, title
+from ajar_tools.picture import CannotCompareError
+from ajar_tools.settings import Settings, SettingsError, checked, load
 from ajar_tools.verdict import Outcome, Verdict
 
 DESCRIPTION = "Say whether two OpenEXR files show the same picture, but for noise."
@@ -39,6 +41,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--junit", type=Path, metavar="FILE", help="write the verdict as JUnit XML")
     p.add_argument("--html", type=Path, metavar="FILE", help="write a self-contained report")
     p.add_argument("--github", action="store_true", help="print failures as annotations of GitHub Actions")
+    p.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     p.add_argument("-q", "--quiet", action="store_true", help="print nothing but failures")
     return p
 
@@ -60,7 +63,7 @@ def run(arguments: list[str]) -> int:
         verdict = compare(options.new, options.reference, settings)
         tell(options, verdict)
         write(options, settings, verdict, f"{program()} {shlex.join(arguments)}")
-    except SettingsError as error:
+    except (SettingsError, CannotCompareError) as error:
         return refuse(str(error))
     except MemoryError:
         return refuse("there is not enough memory")
@@ -82,15 +85,13 @@ def tell(options: argparse.Namespace, verdict: Verdict) -> None:
     elif not (options.quiet and verdict.outcome is Outcome.PASS) and str(options.json) != "-":
         print(verdict.text())
     if options.github and verdict.outcome is not Outcome.PASS:
-        print(annotation(Path(options.reference), verdict.headline()))
+        print(annotation(Path(options.reference), verdict.headline(), title(verdict)))
 
 
 def with_flags(settings: Settings, options: argparse.Namespace) -> Settings:
     """Flags beat the file."""
     if options.alpha is not None:
-        if not 0 < options.alpha < 1:
-            parser().error("--alpha is a probability, between 0 and 1")
-        settings = replace(settings, alpha=options.alpha)
+        settings = replace(settings, alpha=checked("alpha", options.alpha, settings.alpha, "the command line"))
     return replace(settings, other_renderer=settings.other_renderer or options.other_renderer)
 
 

@@ -9,10 +9,12 @@ from pathlib import Path
 from ajar_tools.gates import exact, finite, flip, numbers, statistical, structure, variance
 from ajar_tools.picture import CannotCompareError, Picture, read
 from ajar_tools.settings import Settings
-from ajar_tools.verdict import Outcome, Status, Verdict
+from ajar_tools.verdict import GateResult, Outcome, Status, Verdict
 
 # Beyond these, other gates have nothing to say: differing windows, or pixels that are no numbers.
 ENDING = ("structure", "finite")
+# A change of all light beyond which a comparison that could not see it is worth a warning.
+VAGUE = 0.2
 
 
 def compare(new: str | Path, reference: str | Path, settings: Settings | None = None) -> Verdict:
@@ -36,18 +38,32 @@ def compare_pictures(new: Picture, reference: Picture, settings: Settings) -> Ve
         result = gate(new, reference, settings)
         verdict.gates.append(result)
         if result.gate == "exact" and result.status is Status.PASS:
-            return verdict
+            return judge(verdict, settings)
         if result.gate in ENDING and result.status is Status.FAIL and not goes_on(result.gate, verdict, settings):
             # What ends the comparison cannot be excused: nothing else was looked at.
             return judge(verdict, replace(settings, excused=()))
     verdict.flip = flip.flip_map(new, reference, settings)
+    statistics = statistical.check(new, reference, settings)
     verdict.gates += [
-        statistical.check(new, reference, settings),
+        statistics,
         variance.check(new, reference, settings),
-        flip.check(verdict.flip, new, reference, settings),
+        flip.check(verdict.flip, settings, unjudged(statistics, settings)),
         numbers.check(new, reference, settings),
     ]
+    change = statistics.numbers.get("smallest_change", 0.0)
+    if statistics.status is Status.PASS and change > VAGUE:
+        verdict.warnings.append(
+            f"so much noise is declared that only {change:.0%} more or less light would have been seen"
+        )
     return judge(verdict, settings)
+
+
+def unjudged(statistics: GateResult, settings: Settings) -> str:
+    """Why gate 4 leaves the judgement to FLIP; empty if it does not."""
+    if statistics.status is Status.SKIP:
+        return statistics.message
+    excused = statistics.gate in {entry.gate for entry in settings.excused}
+    return "its failure is excused" if excused and statistics.status is Status.FAIL else ""
 
 
 def goes_on(gate: str, verdict: Verdict, settings: Settings) -> bool:
@@ -59,11 +75,11 @@ def goes_on(gate: str, verdict: Verdict, settings: Settings) -> bool:
 
 
 def judge(verdict: Verdict, settings: Settings) -> Verdict:
-    """Sets the outcome; failures that the settings excuse are reported as such."""
+    """Sets the outcome; failures that the settings excuse are reported as such. Nobody's objection is no pass."""
     excused = {entry.gate: entry for entry in settings.excused}
     for gate in verdict.failures:
         if entry := excused.get(gate.gate):
             gate.status = Status.REPORT
             verdict.exceptions.append(f"{gate.gate}, until {entry.until}: {entry.reason}")
-    verdict.outcome = Outcome.FAIL if verdict.failures else Outcome.PASS
+    verdict.outcome = Outcome.PASS if verdict.deciding and not verdict.failures else Outcome.FAIL
     return verdict

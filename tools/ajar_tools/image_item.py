@@ -7,13 +7,14 @@ import shlex
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import pytest
 
-from ajar_tools.artifacts import Artifacts
-from ajar_tools.cases import CONFIG, Case, RenderError
+from ajar_tools.artifacts import Artifacts, shown
+from ajar_tools.cases import CONFIG, Case, RenderError, read_case
 from ajar_tools.comparison import compare
+from ajar_tools.junit import title
 from ajar_tools.settings import Settings
 from ajar_tools.verdict import GateResult, Outcome, Status, Verdict
 
@@ -29,77 +30,95 @@ class ImageItem(pytest.Item):
         super().__init__(**keywords)
         self.case = case
         self.artifacts = Artifacts(Path())
-        self.settings = case.settings
+
+    @property
+    def new(self) -> Path:
+        """The image that is rendered."""
+        return self.artifacts.case(self.case.name) / "new.exr"
 
     def prepare(self, artifacts: Artifacts, alpha: float) -> None:
         """Learns where to write and how many false alarms are this case's; its own alpha, if it sets one, stays."""
         self.artifacts = artifacts
-        if self.settings.alpha == Settings().alpha:
-            self.settings = replace(self.settings, alpha=alpha)
+        self.case = read_case(self.case.folder, Settings(alpha=alpha))
 
     def runtest(self) -> None:
         """Renders and compares, or makes the reference."""
-        new = self.artifacts.case(self.case.name) / "new.exr"
         try:
-            self.case.render(new, self.config.getoption("--ajar-binary"))
+            self.case.render(self.new, self.config.getoption("--ajar-binary"))
         except RenderError as error:
-            self.fail(f"{self.case.name} cannot be rendered: {error}")
+            self.refuse(f"{self.case.name} cannot be rendered: {error}", "image cannot be rendered")
         if self.config.getoption("--ajar-update"):
-            self.update(new)
+            self.update()
+        elif self.case.reference.is_file():
+            self.judge()
         else:
-            self.judge(new)
+            how = f"Make one, look at it, and commit it:\n    {self.update_command()}"
+            self.refuse(f"{self.case.name} has no reference image. {how}", "no reference image")
 
-    def judge(self, new: Path) -> None:
+    def judge(self) -> None:
         """Fails unless the new image shows what the reference shows."""
-        if not self.case.reference.is_file():
-            self.fail(
-                f"{self.case.name} has no reference image. Make one, look at it, and commit it:\n"
-                f"    {self.update_command()}"
-            )
-        verdict = compare(shown(new), shown(self.case.reference), self.settings)
+        verdict = compare(shown(self.new), shown(self.case.reference), self.case.settings)
         if self.config.getoption("--ajar-exact"):
             require_exact(verdict)
-        folder = self.artifacts.keep(self.case.name, verdict, self.settings, self.command(new))
+        folder = self.keep(verdict, self.command(self.case.reference))
+        for warning in verdict.warnings:
+            self.warn(pytest.PytestWarning(f"{self.case.name}: {warning}"))
         if verdict.outcome is Outcome.PASS:
             return
         report = folder / "report.html"
-        lines = [verdict.text(), f"new image: {shown(new)}"]
+        lines = [verdict.text(), f"new image: {shown(self.new)}"]
         lines += [f"report:    {shown(report)}"] if report.exists() else []
         lines += ["if the change is meant, review and commit the new reference:", f"    {self.update_command()}"]
-        self.fail("\n".join(lines), verdict.headline())
+        self.fail("\n".join(lines), verdict.headline(), title(verdict))
 
-    def update(self, new: Path) -> None:
-        """Replaces the reference unless it holds the same pixels; keeps the old one beside the report."""
-        reference, folder = self.case.reference, self.artifacts.case(self.case.name)
-        check = compare(new, new, self.settings)
+    def update(self) -> None:
+        """Replaces the reference unless it is the same in all; keeps the old one beside the report."""
+        check = compare(shown(self.new), shown(self.new), self.case.settings)
         if check.outcome is not Outcome.PASS:
-            self.fail(f"this image cannot be a reference: {check.headline()}")
-        old = folder / "old.exr"
-        if reference.exists():
-            shutil.copyfile(reference, old)
-            verdict = compare(shown(new), shown(old), self.settings)
-            if verdict.gates and verdict.gates[-1].gate == "exact":
-                verdict.gates[-1].message += "; the reference was kept"
-                self.artifacts.keep(self.case.name, verdict, self.settings, self.command(new))
-                return
-        else:
-            verdict = check
-        self.artifacts.keep(self.case.name, verdict, self.settings, self.command(new), always=True)
+            self.refuse(f"this image cannot be a reference: {check.headline()}", "image cannot be a reference")
+        if not self.case.reference.exists():
+            first = replace(check, gates=[], review="new reference", problem="nothing to compare with")
+            self.keep(first, self.update_command(), always=True)
+            self.replace_reference()
+            return
+        old = self.artifacts.case(self.case.name) / "old.exr"
+        shutil.copyfile(self.case.reference, old)
+        verdict = compare(shown(self.new), shown(old), self.case.settings)
+        kept = bool(verdict.gates) and {verdict.gates[0].status, verdict.gates[-1].status} == {Status.PASS}
+        kept = kept and verdict.gates[-1].gate == "exact"
+        verdict.review = "kept reference" if kept else "changed reference"
+        self.keep(verdict, self.command(old), always=not kept)
+        if not kept:
+            self.replace_reference()
+
+    def replace_reference(self) -> None:
+        """Never leaves half a file."""
+        reference = self.case.reference
         beside = reference.with_name(f".{reference.name}.{os.getpid()}")
-        shutil.copyfile(new, beside)
+        shutil.copyfile(self.new, beside)
         beside.replace(reference)
 
-    def fail(self, message: str, headline: str = "") -> None:
-        """Ends the test; the headline goes to annotations and JUnit."""
-        self.user_properties.append(("ajar", headline or message.splitlines()[0]))
+    def keep(self, verdict: Verdict, command: str, always: bool = False) -> Path:
+        """Stores a verdict among the artifacts."""
+        return self.artifacts.keep(self.case.name, verdict, self.case.settings, command, always)
+
+    def refuse(self, problem: str, topic: str) -> NoReturn:
+        """Ends the test where there is nothing to compare; the list of cases says so too."""
+        verdict = Verdict(Outcome.CANNOT, shown(self.new), shown(self.case.reference), problem=problem)
+        self.keep(verdict, self.command(self.case.reference))
+        self.fail(problem, " ".join(problem.split()), topic)
+
+    def fail(self, message: str, headline: str, topic: str) -> NoReturn:
+        """Ends the test; headline and topic go to annotations and JUnit."""
+        self.user_properties += [("ajar", headline), ("ajar-title", topic)]
         raise CaseFailedError(message)
 
-    def command(self, new: Path) -> str:
+    def command(self, reference: Path) -> str:
         """What a person types to see the same verdict."""
-        command = ["ajar-compare", shown(new), shown(self.case.reference)]
+        command = ["ajar-compare", shown(self.new), shown(reference)]
         if (self.case.folder / CONFIG).exists():
             command += ["--config", shown(self.case.folder / CONFIG)]
-        return shlex.join([*command, "--alpha", f"{self.settings.alpha:.3g}"])
+        return shlex.join([*command, "--alpha", f"{self.case.settings.alpha:.3g}"])
 
     def update_command(self) -> str:
         """What a person types to make the reference."""
@@ -114,12 +133,6 @@ class ImageItem(pytest.Item):
     def reportinfo(self) -> tuple[Path, int, str]:
         """Where the case is, for pytest and its reports."""
         return self.path, 0, self.case.name
-
-
-def shown(path: Path) -> str:
-    """A path relative to the current folder where that is shorter."""
-    relative = os.path.relpath(path)
-    return str(path) if relative.startswith("..") else relative
 
 
 def require_exact(verdict: Verdict) -> None:

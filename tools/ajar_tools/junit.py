@@ -8,6 +8,9 @@ from xml.etree import ElementTree
 
 from ajar_tools.verdict import Outcome, Verdict
 
+# Titles of annotations.
+DIFFERS, CANNOT = "image differs", "images cannot be compared"
+
 
 def junit(cases: Sequence[tuple[str, Verdict]]) -> str:
     """A test suite with one test a case. A failure is a different picture, an error none that can be compared."""
@@ -29,7 +32,12 @@ def printable(text: str) -> str:
     return "".join(c if c in "\n\t" or c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
-def annotation(file: Path, message: str, title: str = "image differs") -> str:
+def title(verdict: Verdict) -> str:
+    """The annotation's of a verdict that is no pass."""
+    return DIFFERS if verdict.outcome is Outcome.FAIL else CANNOT
+
+
+def annotation(file: Path, message: str, title: str) -> str:
     """A line that GitHub Actions shows at a file; its "Workflow commands" say what to escape."""
 
     def escaped(text: str) -> str:

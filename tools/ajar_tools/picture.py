@@ -7,6 +7,7 @@ clipped or filled in.
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,13 @@ from ajar_tools.statistics import BlockStatistics, read_statistics
 
 # Samples (pixels × channels) that are read at most: 1.6 GB of floats.
 MOST_SAMPLES = 400_000_000
+# From this many on the memory that is there is asked for first.
+LARGE = 100_000_000
+# Bytes that a comparison holds for each sample of each image: as a float, and what gates make of it.
+BYTES = 16
 MAGIC = b"\x76\x2f\x31\x01"
+# Channels that a person sees, the first of these that a file has.
+COLORS = (["R", "G", "B"], ["Y"])
 
 
 class CannotCompareError(Exception):
@@ -62,6 +69,10 @@ class Picture:
         indices = [self.channels.index(name) for name in self.color_channels]
         return np.take(self.pixels, indices, axis=2)
 
+    def has(self, names: list[str]) -> bool:
+        """Whether all of these channels are there."""
+        return set(names) <= set(self.channels)
+
     @property
     def color_channels(self) -> list[str]:
         """The channels that a person sees: R, G, B, or Y.
@@ -69,15 +80,16 @@ class Picture:
         Raises:
             CannotCompareError: there are none.
         """
-        for names in (["R", "G", "B"], ["Y"]):
-            if set(names) <= set(self.channels):
-                return names
+        for names in filter(self.has, COLORS):
+            return names
         have = ", ".join(self.channels[:8])
         raise CannotCompareError(f"{self.path} has neither the channels R, G and B nor Y, but {have}")
 
     @property
     def statistics(self) -> BlockStatistics | None:
-        """What the file says about its noise; `None` where it says nothing."""
+        """What the file says about the noise of R, G and B; `None` where it says nothing."""
+        if not self.has(COLORS[0]):
+            return None
         return read_statistics(self.attributes, (self.data_window.width, self.data_window.height))
 
     def rounding(self) -> float:
@@ -148,6 +160,21 @@ def check_spec(path: Path, source: oiio.ImageInput, spec: oiio.ImageSpec, most_s
     if samples > most_samples:
         size = f"{spec.width}×{spec.height} with {spec.nchannels} channels"
         raise CannotCompareError(f"{path} is too large to compare: {size} are more than {most_samples:,} samples")
+    needed, there = 2 * samples * BYTES, available_memory()
+    if samples > LARGE and needed > there:
+        raise CannotCompareError(
+            f"{path} is too large to compare here: {samples:,} samples need {needed / 1e9:.1f} GB of memory, "
+            f"of which {there / 1e9:.1f} GB are there"
+        )
+
+
+def available_memory() -> float:
+    """Bytes that can be had without swapping; infinite where the system does not tell."""
+    try:
+        lines = Path("/proc/meminfo").read_text("ascii").splitlines()
+        return 1024.0 * next(int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
+    except (OSError, StopIteration):
+        return math.inf
 
 
 def complaint(source: Any) -> str:

@@ -1,27 +1,26 @@
 """The pytest plug-in: every folder in tests/images that holds a scene is a test.
 
 `pytest` renders each case and compares it with its reference; `pytest --ajar-update` makes references anew and a page
-to review them. Cases can run in parallel (`pytest -n 4`): each writes only into its own folder of artifacts. The
-fixtures `ajar_render` and `ajar_compare` do the same for tests written in Python.
+to review them. Cases can run in parallel (`pytest -n 4`): each writes only into its own folder of artifacts.
+`ajar_tools.fixtures` does the same for tests written in Python.
 """
 
 from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from ajar_tools.artifacts import Artifacts
-from ajar_tools.cases import CONFIG, SCENE, RenderError, ajar, is_case, read_case, run
-from ajar_tools.comparison import compare
-from ajar_tools.image_item import CaseFailedError, ImageItem
-from ajar_tools.junit import annotation
-from ajar_tools.settings import Settings, SettingsError
-from ajar_tools.verdict import Outcome, Verdict
+from ajar_tools.artifacts import artifacts_of
+from ajar_tools.cases import CONFIG, SCENE, is_case, read_case
+from ajar_tools.image_item import ImageItem
+from ajar_tools.junit import DIFFERS, annotation
+from ajar_tools.settings import SettingsError, checked
+
+pytest_plugins = ["ajar_tools.fixtures"]
 
 # Probability that a suite of honest images raises any false alarm.
 SUITE_ALPHA = 1e-3
@@ -42,18 +41,15 @@ def pytest_configure(config: pytest.Config) -> None:
     """Refuses to overwrite references where nobody looks."""
     if config.getoption("--ajar-update") and os.environ.get("CI"):
         raise pytest.UsageError("--ajar-update is refused because CI is set: references are made where somebody looks")
-    if not 0 < config.getoption("--ajar-alpha") < 1:
-        raise pytest.UsageError("--ajar-alpha is a probability, between 0 and 1")
+    try:
+        checked("alpha", config.getoption("--ajar-alpha"), SUITE_ALPHA, "--ajar-alpha")
+    except SettingsError as error:
+        raise pytest.UsageError(str(error)) from error
 
 
 def is_worker(config: pytest.Config) -> bool:
     """Whether this is one of pytest-xdist's processes."""
     return hasattr(config, "workerinput")
-
-
-def artifacts_of(config: pytest.Config) -> Artifacts:
-    """The folder of the run."""
-    return Artifacts((config.invocation_params.dir / config.getoption("--ajar-artifacts")).resolve())
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
@@ -118,40 +114,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
         terminalreporter.write_line(f"ajar: {'review the new references' if update else 'results'} in {page}")
     if os.environ.get("GITHUB_ACTIONS"):
         for report in terminalreporter.getreports("failed"):
-            headline = dict(report.user_properties).get("ajar")
-            if headline:
-                terminalreporter.write_line(annotation(Path(report.location[0]), str(headline)))
-
-
-@pytest.fixture
-def ajar_render(request: pytest.FixtureRequest, tmp_path: Path) -> Callable[..., Path]:
-    """`ajar_render(scene, *arguments)` renders an image and returns its path."""
-
-    def render(scene: str | Path, *arguments: str, name: str = "new.exr") -> Path:
-        output = tmp_path / name
-        command = [ajar(request.config.getoption("--ajar-binary")), "render", str(scene), "-o", str(output)]
-        try:
-            run([*command, "--quiet", *arguments], timeout=1200)
-        except RenderError as error:
-            pytest.fail(str(error), pytrace=False)
-        return output
-
-    return render
-
-
-@pytest.fixture
-def ajar_compare(request: pytest.FixtureRequest) -> Callable[..., Verdict]:
-    """`ajar_compare(new, reference, **limits)` fails the test unless the images show the same."""
-
-    def check(new: str | Path, reference: str | Path, **limits: object) -> Verdict:
-        settings = replace(Settings(), **limits)  # type: ignore[arg-type]
-        verdict = compare(new, reference, settings)
-        if verdict.outcome is not Outcome.PASS:
-            test = f"{request.path.stem}-{request.node.name}"
-            name = "".join(c if c.isalnum() or c in "-_" else "-" for c in test)
-            folder = artifacts_of(request.config).keep(name, verdict, settings, f"ajar-compare {new} {reference}")
-            request.node.user_properties.append(("ajar", verdict.headline()))
-            pytest.fail(str(CaseFailedError(f"{verdict.text()}\nmore in {folder}")), pytrace=False)
-        return verdict
-
-    return check
+            told = {name: str(value) for name, value in report.user_properties}
+            if "ajar" in told:
+                title = told.get("ajar-title", DIFFERS)
+                terminalreporter.write_line(annotation(Path(report.location[0]), told["ajar"], title))

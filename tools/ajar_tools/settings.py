@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import difflib
+import sys
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,17 @@ except ImportError:  # Python 3.10
     import tomli as tomllib  # type: ignore[no-redef, import-not-found, unused-ignore]
 
 GATES = ("structure", "finite", "exact", "statistics", "variance", "flip", "numbers")
+# Least and largest value of numbers that may not be just any from zero up.
+RANGES = {
+    "alpha": (1e-100, 0.5),
+    "min_rounds": (2, 1e9),
+    "variance_ratio": (1, 1e9),
+    "max_luminance": (0.01, 1e6),
+    "flip_mean": (0, 1),
+    "flip_p95": (0, 1),
+    "layer_pixels": (0, 1),
+    "fail_percent": (0, 100),
+}
 
 
 class SettingsError(Exception):
@@ -99,7 +111,10 @@ def parse(path: Path) -> dict[str, Any]:
 def from_dict(data: dict[str, Any], base: Settings, where: str, today: datetime.date) -> Settings:
     """As `load`, from parsed TOML."""
     data = dict(data)
-    excused = tuple(excused_gate(entry, where, today) for entry in data.pop("excused", []))
+    entries = data.pop("excused", [])
+    if not isinstance(entries, list):
+        raise SettingsError(f"{where}: exceptions are tables, [[excused]]")
+    excused = tuple(excused_gate(entry, where, today) for entry in entries)
     defaults = Settings()
     known = {f.name for f in fields(Settings)} - {"excused"}
     changes: dict[str, Any] = {}
@@ -112,7 +127,11 @@ def from_dict(data: dict[str, Any], base: Settings, where: str, today: datetime.
 
 
 def checked(key: str, value: Any, default: Any, where: str) -> Any:
-    """A value of the type that its default has; numbers are not negative."""
+    """A value of the type that its default has; a number in its range, or not negative.
+
+    Raises:
+        SettingsError: it is something else.
+    """
     if isinstance(default, bool):
         if isinstance(value, bool):
             return value
@@ -121,8 +140,10 @@ def checked(key: str, value: Any, default: Any, where: str) -> Any:
         if isinstance(value, list) and all(isinstance(item, str) for item in value):
             return tuple(value)
         raise SettingsError(f"{where}: {key} must be a list of names")
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value < float("inf"):
-        raise SettingsError(f"{where}: {key} must be a number, zero or more")
+    least, largest = RANGES.get(key, (0, sys.float_info.max))
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= largest:
+        bounds = f"from {least:g} to {largest:g}" if key in RANGES else "zero or more"
+        raise SettingsError(f"{where}: {key} must be a number, {bounds}")
     return value
 
 
@@ -135,7 +156,7 @@ def excused_gate(entry: Any, where: str, today: datetime.date) -> ExcusedGate:
         raise SettingsError(f'{where}: the gate "{gate}" cannot be excused')
     if not isinstance(reason, str) or not reason.strip():
         raise SettingsError(f"{where}: the exception for {gate} gives no reason")
-    if not isinstance(until, datetime.date):
+    if not isinstance(until, datetime.date) or isinstance(until, datetime.datetime):
         raise SettingsError(f"{where}: the exception for {gate} needs a date: until = 2030-01-31")
     if until < today:
         raise SettingsError(f"{where}: the exception for {gate} ended on {until} ({reason})")

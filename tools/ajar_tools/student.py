@@ -21,6 +21,16 @@ def two_sided_t(t: np.ndarray, freedom: np.ndarray) -> np.ndarray:
     return incomplete_beta(freedom / 2, np.full_like(freedom, 0.5), freedom / (freedom + t * t))
 
 
+def critical_t(probability: float, freedom: np.ndarray) -> np.ndarray:
+    """The |t| that |T| exceeds with this probability: `two_sided_t` inverted, by halving the interval of logarithms."""
+    low, high = np.full(freedom.shape, -7.0), np.full(freedom.shape, 120.0)
+    for _ in range(60):
+        middle = (low + high) / 2
+        beyond = two_sided_t(np.exp(middle), freedom) > probability
+        low, high = np.where(beyond, middle, low), np.where(beyond, high, middle)
+    return np.asarray(np.exp(high))
+
+
 def upper_f(ratio: float, above: float, below: float) -> float:
     """Probability that F with (`above`, `below`) degrees of freedom exceeds `ratio`."""
     if ratio <= 0:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 # The gates whose pass says that the pictures are the same, the first that passes.
 DECISIVE = ("exact", "statistics", "flip")
+UNDECIDED = "no gate is left that could say that the pictures are the same"
 
 
 class Outcome(Enum):
@@ -54,8 +55,12 @@ class Verdict:
     gates: list[GateResult] = field(default_factory=list)
     problem: str = ""
     """Why there is nothing to compare."""
+    review: str = ""
+    """What the new image becomes, where nobody judges it: "new reference" and the like."""
     exceptions: list[str] = field(default_factory=list)
     """Failures that the settings excuse, in words."""
+    warnings: list[str] = field(default_factory=list)
+    """Why a pass says little."""
     pictures: tuple[Picture, Picture] | None = None
     """What was compared, for reports: the new image and the reference."""
     flip: FlipMap | None = None
@@ -67,17 +72,23 @@ class Verdict:
         return [gate for gate in self.gates if gate.status is Status.FAIL]
 
     @property
+    def deciding(self) -> list[GateResult]:
+        """The gates that say that the pictures are the same."""
+        return [gate for gate in self.gates if gate.status is Status.PASS and gate.gate in DECISIVE]
+
+    @property
     def reason(self) -> str:
         """What decided, in words."""
-        if self.outcome is Outcome.CANNOT:
+        if self.problem:
             return self.problem
         if self.outcome is Outcome.FAIL:
-            return "; ".join(gate.message for gate in self.failures)
-        judges = [gate.message for gate in self.gates if gate.status is Status.PASS and gate.gate in DECISIVE]
-        return judges[0] if judges else "nothing that was asked differs"
+            return "; ".join(gate.message for gate in self.failures) or UNDECIDED
+        return self.deciding[0].message
 
     def title(self) -> str:
         """The verdict about which files."""
+        if self.review:
+            return f"{self.review.upper()}: {self.new}"
         if self.outcome is Outcome.CANNOT:
             return "CANNOT COMPARE"
         if self.outcome is Outcome.PASS:
@@ -86,13 +97,15 @@ class Verdict:
 
     def headline(self) -> str:
         """One sentence with the reason of what is not a pass."""
-        return self.title() if self.outcome is Outcome.PASS else f"{self.title()}: {self.reason}"
+        silent = self.outcome is Outcome.PASS and not self.review
+        return self.title() if silent else f"{self.title()}: {self.reason}"
 
     def text(self) -> str:
         """The title and a line a gate."""
         lines = [self.title() if self.gates else self.headline()]
         lines += [f"  {i}. {g.gate:<10} {g.status.value:<6}  {g.message}" for i, g in enumerate(self.gates, 1)]
         lines += [f"  excused: {line}" for line in self.exceptions]
+        lines += [f"  warning: {line}" for line in self.warnings]
         return "\n".join(lines)
 
     def as_dict(self) -> dict[str, Any]:
@@ -110,8 +123,10 @@ class Verdict:
                 "new": self.new,
                 "reference": self.reference,
                 "problem": self.problem,
+                "review": self.review,
                 "gates": gates,
                 "exceptions": self.exceptions,
+                "warnings": self.warnings,
             }
         )
 

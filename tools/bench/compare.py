@@ -3,8 +3,9 @@
 
     .venv/bin/python tools/bench/compare.py [WIDTHxHEIGHT...]        default: 1920x1080 3840x2160
 
-Images are synthetic, of half floats in Ajar's layout, and differ in one block, so that all gates are asked. A last line
-holds FLIP against the program of its authors, at the size to which large images are averaged for it.
+Images are synthetic, of half floats in Ajar's layout with albedo, normals and depth, and differ in one block and at the
+edges of layers, so that all gates are asked. A last line holds FLIP against the program of its authors, at the size to
+which large images are averaged for it.
 """
 
 from __future__ import annotations
@@ -29,6 +30,9 @@ from ajar_tools.statistics import NAMES, block_means
 from synthetic import File, Recipe, scene
 
 NOISE = 0.1
+LAYERS = ("albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z", "Z")
+# Every so many rows one is an edge, whose samples scatter.
+EDGES = 50
 
 
 def image(width: int, height: int, seed: int) -> File:
@@ -40,8 +44,11 @@ def image(width: int, height: int, seed: int) -> File:
     # The variance of a mean of n is n times smaller.
     variances = {side: block_means(square, side) / block_means_count(width, height, side) for side in NAMES}
     alpha = np.ones((height, width, 1), np.float32)
-    layers = (pixels, alpha)
-    return File(np.concatenate(layers, axis=2), variances, Recipe(width, height), kind=oiio.HALF)
+    albedo = truth.copy()
+    albedo[::EDGES] *= rng.uniform(0.5, 1, (albedo[::EDGES].shape[0], width, 1)).astype(np.float32)
+    layers = (pixels, alpha, albedo, 2 * albedo - 1, 3 * albedo.sum(axis=2, keepdims=True))
+    channels = ("R", "G", "B", "A", *LAYERS)
+    return File(np.concatenate(layers, axis=2), variances, Recipe(width, height), channels, oiio.HALF)
 
 
 def block_means_count(width: int, height: int, side: int) -> np.ndarray:

@@ -4,10 +4,11 @@
     pip install numpy
     python tools/bench/large.py target/release/ajar
 
-writes a GLB of five million triangles (a rough sheet with normals) and renders it at one sample a pixel: reading,
-building the hierarchy, one round, writing. `--triangles` takes another size, `--threads` another number of threads;
-`--keep FILE` leaves the GLB there, for `importers/examples/parse.rs`. The most memory that rendering holds is told
-beside what it holds while pixels are made, which is the prepared world with its film (needs Linux).
+writes a GLB of five million triangles (a rough sheet with normals) and renders it at one sample a pixel, by path
+tracing and by default: reading, building the hierarchy, learning, one round, writing. `--triangles` takes another size,
+`--threads` another number of threads; `--keep FILE` leaves the GLB there, for `importers/examples/parse.rs`. The most
+memory that the last run holds is told beside what it holds while pixels are made, which is the prepared world with its
+film (needs Linux).
 """
 
 import argparse
@@ -103,7 +104,8 @@ def main():
         for name, command in [
             ("reading alone", ["inspect", str(path)]),
             ("reading and building", [*image, "--dry-run"]),
-            ("first pixels, 1280x720", [*image, "--spp", "1"]),
+            ("first pixels by path", [*image, "--spp", "1", "--integrator", "path"]),
+            ("first pixels by ajar", [*image, "--spp", "1", "--integrator", "ajar"]),
         ]:
             clock, processor, most, late = measure([program, *command])
             print(f"{name:24} {clock:6.2f} s, {processor:6.2f} s of processors, at most {most / 2**30:.2f} GiB")

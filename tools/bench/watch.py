@@ -6,7 +6,8 @@
 
 writes a scene around an asset of a million triangles with a texture, opens the page's WebSocket as a browser does, and
 saves material, camera, texture and geometry again and again: `--saves` times each. The clock runs from the moment that
-the file has its new name until the first part of a changed frame has arrived.
+the file has its new name until the first part of a changed frame has arrived. It also changes a material from the
+page, into a render at work; there the clock runs until the old render has stopped, and until the first changed part.
 """
 
 import argparse
@@ -132,6 +133,20 @@ class Page:
         while self.stream.readline() != b"\r\n":
             pass
 
+    def ask(self, request):
+        """Sends a request; returns when it did."""
+        text = json.dumps(request).encode()
+        # The mask is all zeros, which leaves the text as it is.
+        self.socket.sendall(b"\x81" + struct.pack("B", 0x80 | len(text)) + bytes(4) + text)
+        return time.perf_counter()
+
+    def stopped(self):
+        """Waits until a render is at work no more; returns when that was."""
+        while True:
+            it = self.message()
+            if it and it["type"] == "state" and it["phase"] != "rendering":
+                return time.perf_counter()
+
     def message(self):
         """A document, or None for a part of a frame."""
         first, length = self.stream.read(2)
@@ -141,6 +156,12 @@ class Page:
             (length,) = struct.unpack(">Q", self.stream.read(8))
         payload = self.stream.read(length)
         return json.loads(payload) if first & 15 == 1 else None
+
+    def until_quiet(self, seconds):
+        """Takes all that comes for so long, so that what comes later is new."""
+        end = time.perf_counter() + seconds
+        while time.perf_counter() < end:
+            self.message()
 
     def image(self):
         """Waits for the first frame of an image that is newer than any before; returns its number and when that was."""
@@ -153,6 +174,11 @@ class Page:
                 return found, time.perf_counter()
             if it and it["type"] == "state" and it["phase"] == "rendering":
                 found = it["image"]
+
+
+def report(name, times):
+    high = statistics.quantiles(times, n=20)[-1] if len(times) > 1 else times[0]
+    print(f"{name:9} {statistics.median(times):6.2f} s {high:6.2f} s", flush=True)
 
 
 def main():
@@ -191,7 +217,7 @@ def main():
             page = Page(next(it["page"] for it in said if "page" in it))
             page.image()
             print(f"{len(triangles):,} triangles, {options.threads} threads, {options.saves} saves each")
-            print("edit      median     95 %")
+            print("edit       median     95 %")
             for name, save in edits.items():
                 times = []
                 for i in range(1, options.saves + 1):
@@ -199,8 +225,16 @@ def main():
                     time.sleep(1.5)
                     saved = save(i)
                     times.append(page.image()[1] - saved)
-                high = statistics.quantiles(times, n=20)[-1] if len(times) > 1 else times[0]
-                print(f"{name:8} {statistics.median(times):6.2f} s {high:6.2f} s", flush=True)
+                report(name, times)
+            stops, images = [], []
+            for i in range(1, options.saves + 1):
+                page.until_quiet(1.5)
+                setting = {"do": "set", "table": "material", "name": "sheet", "key": "metallic", "value": i / 100}
+                asked = page.ask(setting)
+                stops.append(page.stopped() - asked)
+                images.append(page.image()[1] - asked)
+            report("page", images)
+            report("its stop", stops)
         finally:
             process.terminate()
             process.wait()

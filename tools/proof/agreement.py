@@ -26,7 +26,16 @@ from ajar_tools.student import two_sided_t
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "agreement.md"
-OURS = ("cornell", "caustic-glass", "door-ajar", "many-lights", "materials", "window-room")
+OURS = {
+    "cornell": "scene.toml",
+    "caustic-glass": "scene.toml",
+    "door-ajar": "scene.toml",
+    "many-lights": "scene.toml",
+    "materials": "scene.toml",
+    "reading-corner": "scene.toml",
+    "tea-table": "look.toml",
+    "window-room": "scene.toml",
+}
 MUTATIONS = (
     "bidirectional",
     "lens",
@@ -97,8 +106,7 @@ def main() -> None:
         for name in names:
             work = Path(folder, name)
             work.mkdir()
-            ours = ROOT / "scenes" / name / "scene.toml"
-            scene = ours if ours.exists() else write(name, work)
+            scene = ROOT / "scenes" / name / OURS[name] if name in OURS else write(name, work)
             rows.append(row(given.ajar, name, scene, given.seconds, work))
     columns = ["scene", "path", *(f"{m}" if m == "bidirectional" else f"+ {m}" for m in MUTATIONS), "mlt", "ajar"]
     table = [f"| {' | '.join(columns)} |", "|" + "---|" * len(columns), *rows]

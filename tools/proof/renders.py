@@ -20,7 +20,8 @@ ROOT = Path(__file__).parents[2]
 SIZE = (48, 32)
 ROUNDS = 16
 # Samples a pixel in a round: few, so that renders are cheap and their noise as skewed as it gets.
-SAMPLES = 4
+SAMPLES = 1
+LAYERS = "albedo,normal,depth"
 # Edges of the longest path: enough for glass and doors, and cheap.
 DEPTH = 6
 # Seed of what others are compared with, and how much longer it is rendered.
@@ -49,7 +50,7 @@ class Render:
         scene = ROOT / "scenes" / self.scene / "scene.toml"
         begun = self.path.with_name(f"part-{self.path.name}")
         arguments = ["--integrator", self.integrator, "--seed", str(self.seed), "--size", f"{width}x{height}"]
-        arguments += ["--threads", "1", "--max-depth", str(DEPTH), *sets(self.changes)]
+        arguments += ["--threads", "1", "--max-depth", str(DEPTH), "--aov", LAYERS, *sets(self.changes)]
         in_rounds(scene, begun, self.rounds, SAMPLES, arguments)
         begun.rename(self.path)
 
@@ -79,11 +80,12 @@ def spoilable(picture: Picture) -> File:
     """An image of Ajar's, to be spoiled and written again."""
     assert picture.statistics is not None
     colors = ("R", "G", "B", "A")
-    pixels = np.stack([picture.plane(name) for name in colors], axis=2)
+    channels = (*colors, *(name for name in picture.channels if name not in colors))
+    pixels = np.stack([picture.plane(name) for name in channels], axis=2)
     window, rounds = picture.data_window, picture.statistics.rounds
     recipe = Recipe(window.width, window.height, rounds=rounds, seed=int(picture.attributes["ajar:seed"]))
     return File(
-        pixels, dict(picture.statistics.variances), recipe, colors, oiio.FLOAT, picture.attributes["ajar:integrator"]
+        pixels, dict(picture.statistics.variances), recipe, channels, oiio.FLOAT, picture.attributes["ajar:integrator"]
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import combinations
 
@@ -13,6 +14,8 @@ SCENES = ("cornell", "caustic-glass", "door-ajar")
 INTEGRATORS = ("path", "bdpt", "mlt", "ajar")
 # The default, and one that is bold enough for alarms to be counted.
 ALPHAS = (0.001, 0.05)
+# Probability that chance alone exceeds what is allowed to it.
+BAD_LUCK = 0.001
 
 
 def twins(scene: str, integrator: str, count: int) -> list[Render]:
@@ -33,8 +36,8 @@ def render(count: int) -> None:
     make(render for cell in CELLS for render in [*twins(*cell, count), reference(*cell)])
 
 
-def section(count: int) -> str:
-    """The table."""
+def section(count: int) -> tuple[str, list[str]]:
+    """The table, and what is wrong in it."""
     pairs = count * (count - 1) // 2
     lines = [
         "\n## Twins that must pass\n",
@@ -51,8 +54,33 @@ def section(count: int) -> str:
         lines.append(f"| `{scene}` | `{integrator}` | " + " | ".join(map(str, counts)) + " |")
         print(lines[-1], flush=True)
     total = [f"**{n}** of {len(CELLS) * (pairs if i % 2 else count)}" for i, n in enumerate(sums)]
+    allowed = [most(len(CELLS), count, alpha, in_pairs) for alpha in ALPHAS for in_pairs in (False, True)]
     lines.append("| all | | " + " | ".join(total) + " |")
-    return "\n".join(lines) + "\n"
+    lines.append("| *exceeded by chance once in 1000 runs* | | " + " | ".join(map(str, allowed)) + " |")
+    return "\n".join(lines) + "\n", excess(sums, allowed)
+
+
+def excess(alarms: list[int], allowed: list[int]) -> list[str]:
+    """Sums of false alarms that chance does not explain, in words."""
+    return [f"{n} false alarms, chance explains {k}" for n, k in zip(alarms, allowed, strict=True) if n > k]
+
+
+def most(cells: int, count: int, alpha: float, in_pairs: bool) -> int:
+    """The false alarms that chance exceeds with the probability `BAD_LUCK`.
+
+    Of the pairs of a cell only half as many as it has images are independent; the others are counted as their copies.
+    """
+    trials = cells * (count // 2 if in_pairs else count)
+    return quantile(trials, alpha) * (count - 1 if in_pairs else 1)
+
+
+def quantile(trials: int, alpha: float) -> int:
+    """The successes that a binomial distribution exceeds with at most the probability `BAD_LUCK`."""
+    beyond, successes = 1.0, -1
+    while beyond > BAD_LUCK:
+        successes += 1
+        beyond -= math.comb(trials, successes) * alpha**successes * (1 - alpha) ** (trials - successes)
+    return successes
 
 
 def alarms(images: list[Picture], longer: Picture) -> Iterator[int]:

@@ -15,7 +15,7 @@ from ajar_tools.comparison import compare_pictures
 from ajar_tools.gates import statistical
 from ajar_tools.settings import ExcusedGate
 from ajar_tools.verdict import Status
-from synthetic import File, Recipe, file
+from synthetic import File, Recipe, brighter, file
 
 TWINS = 40
 
@@ -159,9 +159,38 @@ def test_place_and_amount_are_found(reference: Path, tmp_path: Path) -> None:
     assert "brighter in G" in verdict.headline()
 
 
-def test_few_rounds_are_not_believed(reference: Path, tmp_path: Path) -> None:
-    verdict = compare(file(seed=3, rounds=4).write(tmp_path / "new.exr"), reference)
+@pytest.mark.parametrize("rounds", [2, 4, 7])
+def test_few_rounds_are_not_believed_and_flip_judges(rounds: int, reference: Path, tmp_path: Path) -> None:
+    few = file(seed=3, rounds=rounds, noise=0.05)
+    verdict = compare(few.write(tmp_path / "new.exr"), reference)
     assert gates(verdict)["statistics"] is Status.SKIP
+    assert gates(verdict)["flip"] in (Status.PASS, Status.FAIL)
+    few.pixels[..., :3] = 0
+    black = few.write(tmp_path / "black.exr")
+    for pair in ((black, reference), (reference, black)):
+        verdict = compare(*pair)
+        assert [gate.gate for gate in verdict.failures] == ["flip"], verdict.text()
+        assert f"is the mean of {rounds} rounds, 8 are needed" in verdict.headline()
+
+
+def test_flip_judges_where_more_rounds_are_asked_for_than_there_are(reference: Path, tmp_path: Path) -> None:
+    black = file(seed=3, change=np.zeros_like).write(tmp_path / "black.exr")
+    verdict = compare(black, reference, Settings(min_rounds=1000))
+    assert [gate.gate for gate in verdict.failures] == ["flip"], verdict.text()
+
+
+def test_flip_judges_where_statistics_are_excused(reference: Path, tmp_path: Path) -> None:
+    black = file(seed=3, change=np.zeros_like).write(tmp_path / "black.exr")
+    verdict = compare(black, reference, excusing("statistics"))
+    assert [gate.gate for gate in verdict.failures] == ["flip"], verdict.text()
+    assert verdict.exceptions
+
+
+def test_pictures_that_no_gate_may_judge_do_not_pass(reference: Path, tmp_path: Path) -> None:
+    black = file(seed=3, change=np.zeros_like).write(tmp_path / "black.exr")
+    verdict = compare(black, reference, excusing("statistics", "flip"))
+    assert verdict.outcome is Outcome.FAIL
+    assert "no gate is left" in verdict.headline()
 
 
 def test_edges_of_layers_may_be_sampled_anew(tmp_path: Path) -> None:
@@ -219,8 +248,36 @@ def test_a_short_render_that_missed_light_is_judged_by_the_noise_of_the_long_one
     assert statistical.check(new, right, Settings()).status is Status.FAIL
 
 
-def excusing(gate: str) -> Settings:
-    return Settings(excused=(ExcusedGate(gate, "renamed", datetime.date(2999, 1, 1)),))
+def test_the_smallest_change_that_could_be_found_is_told(reference: Path, tmp_path: Path) -> None:
+    """Half of it is hardly ever found, half as much again nearly always."""
+    right = read(reference)
+    twins = [read(file(seed=seed).write(tmp_path / "new.exr")) for seed in range(20)]
+    told = statistical.check(twins[0], right, Settings())
+    change = told.numbers["smallest_change"]
+    assert f"{100 * change:.2g} % more or less light would have been seen" in told.message
+
+    def found(factor: float) -> int:
+        mutants = [brighter(twin, 1 + factor * change) for twin in twins]
+        return sum(statistical.check(mutant, right, Settings()).status is Status.FAIL for mutant in mutants)
+
+    assert found(0.5) <= 3
+    assert found(1.5) >= 17
+
+
+def test_noise_that_hides_everything_is_a_warning(reference: Path, tmp_path: Path) -> None:
+    black = file(seed=3, change=np.zeros_like)
+    black.integrator = "bdpt"
+    verdict = compare(black.write(tmp_path / "new.exr"), reference)
+    assert verdict.outcome is Outcome.FAIL
+    black.variances = {side: 1e6 * variance for side, variance in black.variances.items()}
+    verdict = compare(black.write(tmp_path / "new.exr"), reference)
+    assert gates(verdict)["statistics"] is Status.PASS
+    assert "so much noise is declared that only" in verdict.text()
+    assert verdict.as_dict()["warnings"]
+
+
+def excusing(*gates: str) -> Settings:
+    return Settings(excused=tuple(ExcusedGate(gate, "renamed", datetime.date(2999, 1, 1)) for gate in gates))
 
 
 def test_an_excused_structure_leaves_the_other_gates_to_judge(reference: Path, tmp_path: Path) -> None:
@@ -229,6 +286,12 @@ def test_an_excused_structure_leaves_the_other_gates_to_judge(reference: Path, t
     same = compare(renamed.write(tmp_path / "same.exr"), reference, excusing("structure"))
     assert same.outcome is Outcome.PASS
     assert same.exceptions
+    equal = file(seed=1000, rounds=64)
+    equal.channels = renamed.channels
+    verdict = compare(equal.write(tmp_path / "equal.exr"), reference, excusing("structure"))
+    assert verdict.outcome is Outcome.PASS
+    assert gates(verdict) == {"structure": Status.REPORT, "finite": Status.PASS, "exact": Status.PASS}
+    assert verdict.exceptions
     renamed.pixels[..., :3] = 0
     black = compare(renamed.write(tmp_path / "black.exr"), reference, excusing("structure"))
     assert black.outcome is Outcome.FAIL

@@ -131,6 +131,19 @@ def test_the_workflow_says_what_the_page_says() -> None:
     assert set(shlex.split(runs[2])[3:]) <= set(pinned)
 
 
+def test_the_workflow_takes_ajar_from_its_own_checkout() -> None:
+    """The repository that is guarded is another one."""
+    (ajar,) = (step["with"] for step in steps() if "checkout" in step.get("uses", "") and "with" in step)
+    install, pip = (step["run"] for step in steps() if step.get("run", "").startswith(("cargo", "pip")))
+    assert shlex.split(install)[-1] == ajar["path"]
+    assert f"./{ajar['path']}/tools" in shlex.split(pip)
+    assert (ROOT / "tools" / "pyproject.toml").is_file()
+    (cache,) = (step for step in steps() if "cache" in step.get("uses", ""))
+    assert cache["with"]["path"].endswith("/bin/ajar")
+    skipped = [step["run"].split()[0] for step in steps() if "cache-hit" in step.get("if", "")]
+    assert skipped == ["rustup", "cargo"]
+
+
 def test_the_workflow_keeps_what_the_run_leaves() -> None:
     *_, last = steps()
     assert "upload-artifact" in last["uses"]

@@ -2,12 +2,13 @@
 
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from ajar_tools import CannotCompareError, Outcome, compare, read
+from ajar_tools import CannotCompareError, Outcome, Settings, __version__, cli, compare, picture, read
 from synthetic import file
 
 
@@ -72,11 +73,59 @@ def test_cropped(good: Path, tmp_path: Path) -> None:
     assert "data windows differ" in refused(write(tmp_path / "a.exr", spec), good)
 
 
+def test_crops_of_other_renderers_at_different_places(tmp_path: Path) -> None:
+    """They have one size, and no pixel in common."""
+    paths = []
+    for left in (0, 20):
+        spec = oiio.ImageSpec(50, 50, 3, oiio.FLOAT)
+        spec.x, spec.full_width, spec.full_height = left, 96, 72
+        paths.append(write(tmp_path / f"{left}.exr", spec))
+    verdict = compare(*paths, Settings(other_renderer=True))
+    assert verdict.outcome is Outcome.CANNOT
+    assert "data windows differ: 50×50 at (0, 0)" in verdict.problem
+
+
+def test_chromaticities_are_rounded_by_who_writes_them(tmp_path: Path) -> None:
+    def primaries(name: str, white: float) -> Path:
+        spec = oiio.ImageSpec(8, 8, 3, oiio.FLOAT)
+        spec.attribute("chromaticities", "float[8]", (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, white))
+        return write(tmp_path / name, spec)
+
+    reference = primaries("a.exr", 0.329)
+    assert compare(primaries("b.exr", 0.32902), reference).outcome is Outcome.PASS
+    assert "chromaticities" in compare(primaries("c.exr", 0.3295), reference).headline()
+
+
 def test_no_colours(good: Path, tmp_path: Path) -> None:
     spec = oiio.ImageSpec(96, 72, 1, oiio.FLOAT)
     spec.channelnames = ("Z",)
     with pytest.raises(CannotCompareError, match="neither"):
         _ = read(write(tmp_path / "z.exr", spec)).color
+
+
+def test_a_report_of_files_without_colours(good: Path, tmp_path: Path) -> None:
+    """A layer by its name alone: another picture where only one file has it, none to compare where both do."""
+    spec = oiio.ImageSpec(96, 72, 3, oiio.FLOAT)
+    spec.channelnames = ("beauty.R", "beauty.G", "beauty.B")
+    layer = write(tmp_path / "layer.exr", spec)
+    for pair, code in (((layer, good), 1), ((good, layer), 1), ((layer, layer), 2)):
+        command = [sys.executable, "-m", "ajar_tools", "compare", *pair, "--html", tmp_path / "report.html"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+        assert done.returncode == code, done.stderr
+        assert "beauty.R" in done.stdout + done.stderr
+        assert "Traceback" not in done.stderr
+
+
+def test_luminance_alone_has_no_statistics_of_colours(good: Path, tmp_path: Path) -> None:
+    paths = []
+    for seed, scale in ((1, 1.0), (2, 1.0), (3, 3.0)):
+        grey = file(seed=seed, scale=scale, noise=0.05)
+        grey.pixels, grey.channels = grey.pixels[..., :1], ("Y",)
+        paths.append(grey.write(tmp_path / f"{seed}.exr"))
+    reference, twin, other = paths
+    verdict = compare(twin, reference)
+    assert verdict.outcome is Outcome.PASS, verdict.text()
+    assert compare(other, reference).outcome is Outcome.FAIL
 
 
 def test_colours_of_whole_numbers(good: Path, tmp_path: Path) -> None:
@@ -128,6 +177,19 @@ def test_huge(good: Path) -> None:
         read(good, most_samples=1000)
 
 
+def test_large_for_the_memory_that_is_there(good: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(picture, "LARGE", 1000)
+    monkeypatch.setattr(picture, "available_memory", lambda: 1e5)
+    with pytest.raises(CannotCompareError, match=r"27,648 samples need 0\.0 GB of memory, of which 0\.0 GB are there"):
+        read(good)
+    monkeypatch.setattr(picture, "available_memory", lambda: 1e9)
+    assert read(good).channels
+
+
+def test_the_memory_that_is_there_is_known() -> None:
+    assert picture.available_memory() > 1e8
+
+
 def test_huge_by_its_header_alone(good: Path, tmp_path: Path) -> None:
     """The windows promise 10⁹ pixels that the file does not have; nobody may ask for the memory."""
     data = bytearray(good.read_bytes())
@@ -154,9 +216,24 @@ def test_random_damage_never_passes_unnoticed(good: Path, tmp_path: Path) -> Non
             assert np.abs(read(path).pixels - clean).mean() < 1e-3
 
 
+def test_the_version_is_that_of_ajar(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        cli.main(["--version"])
+    assert end.value.code == 0
+    assert capsys.readouterr().out == f"ajar-compare {__version__}\n"
+    cargo = tomllib.loads((Path(__file__).parents[2] / "Cargo.toml").read_text("utf-8"))
+    assert cargo["workspace"]["package"]["version"] == __version__
+
+
 @pytest.mark.parametrize(
     ("arguments", "code"),
-    [(["good", "good"], 0), (["good", "missing.exr"], 2), (["good"], 2), (["good", "good", "--alpha", "3"], 2)],
+    [
+        (["good", "good"], 0),
+        (["good", "missing.exr"], 2),
+        (["good"], 2),
+        (["good", "good", "--alpha", "3"], 2),
+        (["good", "good", "--alpha", "0"], 2),
+    ],
 )
 def test_exit_codes(arguments: list[str], code: int, good: Path) -> None:
     arguments = [str(good) if word == "good" else word for word in arguments]

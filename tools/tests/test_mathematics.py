@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from ajar_tools.flip import exposures_for, hdr_flip
 from ajar_tools.statistics import SIDES, WHOLE, block_means, from_rounds
-from ajar_tools.student import two_sided_t, upper_f
+from ajar_tools.student import critical_t, two_sided_t, upper_f
 
 flip_evaluator = pytest.importorskip("flip_evaluator")
 
@@ -23,6 +23,7 @@ flip_evaluator = pytest.importorskip("flip_evaluator")
 )
 def test_students_t_has_the_tabulated_values(t: float, freedom: int, critical: float) -> None:
     assert two_sided_t(np.array([t]), np.array([freedom]))[0] == pytest.approx(critical, rel=2e-3)
+    assert critical_t(critical, np.array([freedom]))[0] == pytest.approx(t, rel=2e-3)
 
 
 def test_far_tails_of_students_t_follow_the_density() -> None:

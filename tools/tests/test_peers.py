@@ -6,6 +6,8 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+import OpenImageIO as oiio
 import pytest
 from ajar_tools import Outcome, Picture, Settings, Verdict, compare, read
 from ajar_tools.comparison import compare_pictures
@@ -80,6 +82,41 @@ def test_three_percent_more_red_are_found_by_statistics(ours: Path) -> None:
 def test_what_a_person_sees_is_found_without_statistics(theirs: Path, ours: Path) -> None:
     verdict = compare_pictures(redder(read(ours), 1.5), read(theirs), LIMITS[theirs])
     assert [gate.gate for gate in verdict.failures] == ["flip"]
+
+
+# What pbrt-v4's GBufferFilm writes beside R, G and B (src/pbrt/film.cpp).
+PBRT = [f"{layer}.{c}" for layer in ("Albedo", "Variance", "RelativeVariance") for c in "RGB"]
+PBRT += [f"{layer}.{c}" for layer in ("P", "N", "Ns") for c in "XYZ"] + ["u", "v", "dzdx", "dzdy"]
+
+
+@pytest.fixture
+def in_layout_of_pbrt(tmp_path: Path) -> Path:
+    """No image by pbrt: Mitsuba's pixels, with the channels, types, windows and attributes that pbrt gives a file."""
+    colors = read(MITSUBA).color
+    height, width = colors.shape[:2]
+    spec = oiio.ImageSpec(width, height, 3 + len(PBRT), oiio.HALF)
+    spec.channelnames = ("R", "G", "B", *PBRT)
+    spec.attribute("renderTimeSeconds", 12.5)
+    spec.attribute("samplesPerPixel", 4096)
+    for name in ("worldToCamera", "worldToNDC"):
+        spec.attribute(name, "matrix", tuple(np.eye(4, dtype=np.float32).reshape(-1)))
+    image = oiio.ImageBuf(spec)
+    layers = np.full((height, width, len(PBRT)), 0.5)
+    image.set_pixels(spec.roi, np.ascontiguousarray(np.concatenate([colors, layers], axis=2), np.float32))
+    assert image.write(str(tmp_path / "pbrt.exr")), image.geterror()
+    return tmp_path / "pbrt.exr"
+
+
+def test_the_layout_of_pbrt_is_understood(ours: Path, in_layout_of_pbrt: Path) -> None:
+    assert set(PBRT) < set(read(in_layout_of_pbrt).channels)
+    verdict = compare(ours, in_layout_of_pbrt, OTHER)
+    assert verdict.outcome is Outcome.PASS, verdict.text()
+    assert statuses(verdict)["flip"] is Status.PASS
+    mutant = redder(read(ours), 1.5)
+    assert compare_pictures(mutant, read(in_layout_of_pbrt), OTHER).outcome is Outcome.FAIL
+    verdict = compare(ours, in_layout_of_pbrt)
+    assert [gate.gate for gate in verdict.failures] == ["structure"]
+    assert "--other-renderer" in verdict.headline()
 
 
 @pytest.mark.parametrize("theirs", [MITSUBA, PASSES, CYCLES], ids=["mitsuba", "passes", "cycles"])

@@ -3,11 +3,14 @@
 import json
 import os
 import re
+import shlex
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import OpenImageIO as oiio
 import pytest
+from ajar_tools import cli, read
 from synthetic import file
 
 # Copies the picture that lies beside the scene: fake-ajar render SCENE -o OUTPUT …
@@ -51,22 +54,55 @@ def run(project: pytest.Pytester, *arguments: str) -> pytest.RunResult:
     return start(*plugins, *arguments)
 
 
-def test_missing_reference_fails_with_the_command_that_makes_it(project: pytest.Pytester) -> None:
-    result = run(project)
+def test_missing_reference_fails_with_the_command_that_makes_it(
+    project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("GITHUB_ACTIONS", "true")
+    result = run(project, "--junitxml=junit.xml")
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*door has no reference image*", "*pytest tests/images/door --ajar-update*"])
+    command = "pytest tests/images/door --ajar-update"
+    result.stdout.fnmatch_lines(["*door has no reference image*", f"*{command}*"])
+    result.stdout.re_match_lines([rf"::error file=.*,title=no reference image::door has no .*{command}"])
+    properties = ElementTree.parse(project.path / "junit.xml").iter("property")
+    assert any(command in str(item.get("value")) for item in properties)
     assert (project.path / "ajar-artifacts" / "door" / "new.exr").exists()
+    index = (project.path / "ajar-artifacts" / "index.html").read_text()
+    assert "<td>door<td" in index
+    assert command in index
 
 
 def test_update_writes_a_reference_and_a_review_page_then_twins_pass(project: pytest.Pytester) -> None:
     result = run(project, "--ajar-update")
     result.assert_outcomes(passed=1)
     result.stdout.fnmatch_lines(["*review the new references in*"])
-    assert (project.path / "ajar-artifacts" / "door" / "report.html").exists()
+    index = (project.path / "ajar-artifacts" / "index.html").read_text()
+    assert '<td class="review">new reference<td>' in index
+    assert "nothing to compare with" in index
+    found = data(project)
+    assert found["verdict"]["review"] == "new reference"
+    assert found["verdict"]["problem"] == "nothing to compare with"
+    assert found["command"] == "pytest tests/images/door --ajar-update"
     run(project).assert_outcomes(passed=1)
     write_scene(project.path, "door", seed=2)
     run(project).assert_outcomes(passed=1)
     run(project, "--ajar-exact").assert_outcomes(failed=1)
+
+
+def data(project: pytest.Pytester, case: str = "door") -> dict[str, Any]:
+    """What a report shows."""
+    page = (project.path / "ajar-artifacts" / case / "report.html").read_text("utf-8")
+    match = re.search(r'<script id="data" type="application/json">(.*?)</script>', page, re.DOTALL)
+    assert match
+    found: dict[str, Any] = json.loads(match[1])
+    return found
+
+
+def reproduced(project: pytest.Pytester, command: str, monkeypatch: pytest.MonkeyPatch) -> int:
+    """The exit code of the command that a report names, run in the folder of the run."""
+    program, *arguments = shlex.split(command)
+    assert program == "ajar-compare"
+    monkeypatch.chdir(project.path)
+    return cli.main(arguments)
 
 
 def test_changed_picture_fails_with_words_report_and_junit(project: pytest.Pytester) -> None:
@@ -92,16 +128,69 @@ def test_changed_picture_fails_with_words_report_and_junit(project: pytest.Pytes
     assert difference[..., 0].mean() > difference[..., 2].mean()
 
 
-def test_update_keeps_old_and_new_side_by_side(project: pytest.Pytester) -> None:
+def test_update_keeps_old_and_new_side_by_side(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     run(project, "--ajar-update")
     reference = project.path / "tests/images/door/reference.exr"
     before = reference.read_bytes()
     write_scene(project.path, "door", seed=2, scale=1.05)
     run(project, "--ajar-update").assert_outcomes(passed=1)
     assert reference.read_bytes() != before
-    artifacts = project.path / "ajar-artifacts" / "door"
-    assert (artifacts / "old.exr").read_bytes() == before
-    assert "DIFFERENT PICTURE" in (artifacts / "report.html").read_text()
+    assert (project.path / "ajar-artifacts/door/old.exr").read_bytes() == before
+    index = (project.path / "ajar-artifacts/index.html").read_text()
+    assert '<td class="review">changed reference<td>' in index
+    assert 'class="fail"' not in index
+    found = data(project)
+    assert found["verdict"]["review"] == "changed reference"
+    assert found["verdict"]["outcome"] == "fail"
+    assert reproduced(project, found["command"], monkeypatch) == 1
+    run(project, "--ajar-update").assert_outcomes(passed=1)
+    assert '<td class="review">kept reference<td>' in (project.path / "ajar-artifacts/index.html").read_text()
+
+
+def test_update_replaces_an_equal_picture_of_another_structure(project: pytest.Pytester) -> None:
+    run(project, "--ajar-update").assert_outcomes(passed=1)
+    folder = project.path / "tests/images/door"
+    renamed = file(seed=1)
+    renamed.channels = ("R", "G", "B", "coverage")
+    renamed.write(folder / "scene.exr")
+    (folder / "compare.toml").write_text(
+        '[[excused]]\ngate = "structure"\nreason = "renamed, issue 13"\nuntil = 2999-01-01\n'
+    )
+    run(project).assert_outcomes(passed=1)
+    run(project, "--ajar-update").assert_outcomes(passed=1)
+    assert read(folder / "reference.exr").channels[-1] == "coverage"
+
+
+def test_an_alpha_of_its_own_stays(project: pytest.Pytester) -> None:
+    """Also one that is the default of a single comparison."""
+    run(project, "--ajar-update").assert_outcomes(passed=1)
+    write_scene(project.path, "other", seed=1)
+    (project.path / "tests/images/door/compare.toml").write_text("alpha = 0.001\n")
+    run(project)
+    commands = {
+        case: json.loads((project.path / "ajar-artifacts" / case / "verdict.json").read_text())["command"]
+        for case in ("door", "other")
+    }
+    assert commands["door"].endswith("--alpha 0.001")
+    assert commands["other"].endswith("--alpha 0.0005")
+
+
+def test_noise_that_hides_everything_is_a_warning(project: pytest.Pytester) -> None:
+    run(project, "--ajar-update").assert_outcomes(passed=1)
+    noisy = file(seed=2)
+    noisy.integrator = "bdpt"
+    noisy.variances = {side: 1e6 * variance for side, variance in noisy.variances.items()}
+    noisy.write(project.path / "tests/images/door/scene.exr")
+    result = run(project)
+    result.assert_outcomes(passed=1, warnings=1)
+    result.stdout.fnmatch_lines(["*so much noise is declared*"])
+
+
+def test_names_of_cases_are_quoted_in_links(project: pytest.Pytester) -> None:
+    write_scene(project.path, "50% #1", seed=1)
+    run(project, "--ajar-update").assert_outcomes(passed=2)
+    index = (project.path / "ajar-artifacts/index.html").read_text()
+    assert 'href="50%25%20%231/report.html">50% #1</a>' in index
 
 
 def test_update_is_refused_where_ci_is_set(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -144,6 +233,7 @@ def test_a_renderer_that_fails_is_quoted(project: pytest.Pytester) -> None:
     result = run(project)
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["*ended with exit code 1*", "*scene.toml:1:1: error: no camera*"])
+    assert "no camera" in (project.path / "ajar-artifacts/index.html").read_text()
 
 
 def test_a_renderer_that_is_missing_is_a_failure(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -158,6 +248,12 @@ def test_a_renderer_that_is_missing_is_a_failure(project: pytest.Pytester, monke
     [
         ("flip_maen = 0.1", '*unknown key "flip_maen"; did you mean "flip_mean"*'),
         ('alpha = "small"', "*alpha must be a number*"),
+        ("alpha = 0", "*alpha must be a number, from 1e-100 to 0.5*"),
+        ("alpha = 7", "*alpha must be a number, from 1e-100 to 0.5*"),
+        ("max_luminance = 0", "*max_luminance must be a number, from 0.01 to 1e+06*"),
+        ("max_error = inf", "*max_error must be a number, zero or more*"),
+        ("excused = 3", "*exceptions are tables*"),
+        ('[[excused]]\ngate = "flip"\nreason = "x"\nuntil = 2999-01-01T10:00:00', "*needs a date*"),
         ('[[excused]]\ngate = "flip"\nreason = "noise"', "*needs gate, reason and until*"),
         ('[[excused]]\ngate = "finite"\nreason = "x"\nuntil = 2999-01-01', "*cannot be excused*"),
         ('[[excused]]\ngate = "flip"\nreason = "old"\nuntil = 2020-01-01', "*ended on 2020-01-01 (old)*"),
@@ -175,7 +271,7 @@ def test_an_exception_lets_a_gate_fail_and_is_shown(project: pytest.Pytester) ->
     run(project, "--ajar-update")
     folder = write_scene(project.path, "door", seed=2, scale=1.05)
     (folder / "compare.toml").write_text(
-        '[[excused]]\ngate = "statistics"\nreason = "new lamp, issue 12"\nuntil = 2999-01-01\n'
+        'flip_mean = 0.1\n[[excused]]\ngate = "statistics"\nreason = "new lamp, issue 12"\nuntil = 2999-01-01\n'
     )
     run(project).assert_outcomes(passed=1)
     verdict = json.loads((project.path / "ajar-artifacts/door/verdict.json").read_text())
@@ -189,8 +285,8 @@ def test_another_renderer_is_run_by_its_command(project: pytest.Pytester) -> Non
     run(project, "--ajar-update", "--ajar-binary", "/nowhere/ajar").assert_outcomes(passed=1)
 
 
-def test_fixtures_compare_from_python(project: pytest.Pytester) -> None:
-    file(seed=2, scale=1.1).write(project.path / "brighter.exr")
+def test_fixtures_compare_from_python(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    file(seed=2).write(project.path / "twin.exr")
     project.makepyfile(
         """
         def test_same(ajar_render, ajar_compare):
@@ -198,13 +294,22 @@ def test_fixtures_compare_from_python(project: pytest.Pytester) -> None:
             assert ajar_compare(image, image).gates
 
         def test_other(ajar_render, ajar_compare):
-            image = ajar_render("tests/images/door/scene.toml")
-            ajar_compare(ajar_render("brighter.toml", name="other.exr"), image)
+            image = ajar_render("tests/images/door/scene.toml", name="the other.exr")
+            ajar_compare(ajar_render("twin.toml"), image, max_error=0.0001)
+
+        def test_mistake(ajar_compare):
+            ajar_compare("twin.exr", "twin.exr", flip_maen=0.5)
         """
     )
     result = run(project, "test_fixtures_compare_from_python.py")
-    result.assert_outcomes(passed=1, failed=1)
-    assert (project.path / "ajar-artifacts/test_fixtures_compare_from_python-test_other/report.html").exists()
+    result.assert_outcomes(passed=1, failed=2)
+    result.stdout.fnmatch_lines(['*unknown key "flip_maen"; did you mean "flip_mean"*'])
+    assert "TypeError" not in result.stdout.str()
+    name = "test_fixtures_compare_from_python-test_other"
+    artifacts = project.path / "ajar-artifacts" / name
+    assert (artifacts / "new.exr").read_bytes() == (project.path / "twin.exr").read_bytes()
+    # Without the test's limit it would be 0.
+    assert reproduced(project, data(project, name)["command"], monkeypatch) == 1
 
 
 def test_a_folder_of_somebody_else_is_not_emptied(project: pytest.Pytester) -> None:

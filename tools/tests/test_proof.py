@@ -23,7 +23,7 @@ INTEGRATORS = ("path", "bdpt", "mlt", "ajar")
 SIZE = "192x144"
 FEW = 8
 # The brightness of an image by `mlt` has noise of its own in each round.
-MANY = {"path": 32, "bdpt": 32, "mlt": 64, "ajar": 32}
+MANY = {"path": 32, "bdpt": 32, "mlt": 128, "ajar": 32}
 REFERENCE = 100
 
 Renderer = Callable[..., Path]
@@ -73,8 +73,14 @@ def test_other_seeds_are_twins(integrator: str, reference: Path, render: Rendere
 
 
 def test_two_percent_more_energy_are_found(integrator: str, reference: Path, render: Renderer) -> None:
-    brighter = render(integrator, 1, MANY[integrator], changes=("camera.main.exposure=0.02857",))
+    brighter = render(integrator, 1, MANY[integrator], changes=("camera.main.exposure=1.02",))
+    assert energy(brighter, reference) == pytest.approx(1.02, abs=0.012)
     assert "statistics" in failing(compare(brighter, reference))
+
+
+def energy(new: Path, reference: Path) -> float:
+    """Of an image, over that of another one."""
+    return float(read(new).color.mean() / read(reference).color.mean())
 
 
 CHANGES = {
@@ -85,7 +91,9 @@ CHANGES = {
 
 @pytest.mark.parametrize("change", CHANGES)
 def test_changed_scenes_are_found(change: str, integrator: str, reference: Path, render: Renderer) -> None:
-    assert "statistics" in failing(compare(render(integrator, 1, changes=CHANGES[change]), reference))
+    new = render(integrator, 1, changes=CHANGES[change])
+    assert 0.7 < energy(new, reference) < 1.1
+    assert "statistics" in failing(compare(new, reference))
 
 
 def mean(passes: list[Path], integrator: str) -> File:

@@ -64,17 +64,22 @@ def test_the_same_command_gives_the_same_pixels(reference: Path, tmp_path: Path)
     assert verdict.outcome is Outcome.PASS
 
 
-@pytest.mark.parametrize("change", ["camera.main.exposure=0.0285", "camera.main.yfov=30.2", "render.max_depth=3"])
-def test_mutants_fail(change: str, reference: Path, tmp_path: Path) -> None:
-    """2 % more energy, 2 % more field of view, indirect light cut off."""
-    verdict = compare(render(tmp_path / "new.exr", "--seed", "3", "--set", change), reference)
+@pytest.mark.parametrize(
+    ("change", "energy"),
+    [("camera.main.exposure=1.05", 1.05), ("camera.main.yfov=30.2", 0.97), ("render.max_depth=3", 0.9)],
+)
+def test_mutants_fail(change: str, energy: float, reference: Path, tmp_path: Path) -> None:
+    """5 % more energy, 2 % more field of view, indirect light cut off."""
+    new = render(tmp_path / "new.exr", "--seed", "3", "--set", change)
+    assert read(new).color.mean() / read(reference).color.mean() == pytest.approx(energy, abs=0.03)
+    verdict = compare(new, reference)
     assert verdict.outcome is Outcome.FAIL
     assert {gate.gate: gate.status for gate in verdict.gates}["statistics"] is Status.FAIL, verdict.text()
 
 
 def test_ajar_diff_hands_over(reference: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("AJAR_DIFF_PYTHON", sys.executable)
-    brighter = render(tmp_path / "new.exr", "--seed", "3", "--set", "camera.main.exposure=0.1")
+    brighter = render(tmp_path / "new.exr", "--seed", "3", "--set", "camera.main.exposure=1.3")
     report = tmp_path / "report.html"
     for new, code in ((reference, 0), (tmp_path / "missing.exr", 2), (brighter, 1)):
         command = [os.environ["AJAR_BIN"], "diff", new, reference, "--html", report]

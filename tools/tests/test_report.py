@@ -1,12 +1,15 @@
 """The report in a real browser: it draws what it says, without errors and without the network."""
 
+import json
+import re
 from collections.abc import Iterator
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from ajar_tools import Settings, compare
+from ajar_tools import Settings, compare, read
 from ajar_tools.report import write_report
 from browser import NoBrowserError, started
 from synthetic import file
@@ -86,9 +89,8 @@ def test_thumbs_show_all_modes_at_once(page: Any) -> None:
 
 def test_b_blinks(page: Any) -> None:
     page.keyboard.press("b")
-    page.wait_for_selector("#canvas[data-shown=reference]")
-    assert page.inner_text("#left") == "reference"
-    page.wait_for_selector("#canvas[data-shown=new]")
+    for name in ("reference", "new"):
+        page.wait_for_function(f"$('canvas').dataset.shown === '{name}' && $('left').textContent === '{name}'")
     page.keyboard.press("b")
     assert shown(page) == "new"
 
@@ -110,6 +112,7 @@ def test_holding_the_mouse_or_space_swaps(page: Any) -> None:
 
 def test_exposure_brightens(page: Any) -> None:
     page.keyboard.press("3")
+    assert page.is_enabled("#exposure")
     before = page.evaluate(BRIGHTNESS)
     page.fill("#exposure", "1.5")
     assert page.inner_text("#stops") == "+1.5 EV"
@@ -123,8 +126,39 @@ def test_wipe_follows_the_pointer(page: Any) -> None:
     for fraction in (0.2, 0.9):
         page.mouse.move(box["x"] + fraction * box["width"], box["y"] + 30)
         images.append(page.evaluate(BRIGHTNESS))
+        line = page.locator("#line").bounding_box()
+        # A pixel of the screen, not of the image.
+        assert (line["x"] - box["x"], line["width"]) == pytest.approx((fraction * box["width"], 1), abs=1)
     assert images[0] != images[1]
-    assert "pixel (" in page.inner_text("#pixel")
+    page.keyboard.press("3")
+    assert not page.is_visible("#line")
+
+
+def test_pixels_are_read_where_the_pointer_is(page: Any, tmp_path: Path) -> None:
+    """Values are those of the file, but for the last digits, which a page does not hold."""
+    box = page.locator("#frame").bounding_box()
+    x, y = 20, 44
+    page.mouse.move(box["x"] + (x + 0.5) * box["width"] / 96, box["y"] + (y + 0.5) * box["height"] / 72)
+    text = page.inner_text("#pixel")
+    assert text.startswith(f"pixel ({x}, {y})")
+    spoiled, reference = read(report(tmp_path).with_name("new.exr")), read(tmp_path / "reference.exr")
+    told = [float(word) for word in re.findall(r"\d\S*", text.split(")")[1])]
+    expected = [*spoiled.color[y, x], *reference.color[y, x]]
+    assert told == pytest.approx(expected, abs=float(max(expected)) / 200)
+
+
+def test_all_numbers_are_those_of_the_gates(page: Any) -> None:
+    page.click("summary")
+    numbers = json.loads(page.inner_text("#numbers"))
+    assert [gate["gate"] for gate in numbers][3:] == ["statistics", "variance", "flip", "numbers"]
+    assert numbers[3]["numbers"]["block"] == [16, 40, 24, 48]
+
+
+def test_the_command_is_copied(page: Any) -> None:
+    page.evaluate("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
+    page.click("#copy")
+    page.wait_for_function("document.getElementById('copy').textContent === 'copied'")
+    assert page.evaluate("window.copied") == page.inner_text("#command")
 
 
 @pytest.mark.parametrize("mode", ["difference", "significance", "flip"])
@@ -132,6 +166,7 @@ def test_maps_are_brightest_at_the_spoiled_block(mode: str, page: Any) -> None:
     page.click(f"button[data-mode={mode}]")
     assert shown(page) == mode
     assert page.is_visible("#scale")
+    assert page.is_disabled("#exposure")
     colour = (
         """([x, y]) => Array.from(document.getElementById("canvas").getContext("2d").getImageData(x, y, 1, 1).data)"""
     )
@@ -147,6 +182,38 @@ def test_the_block_is_framed_and_zoom_scales(page: Any) -> None:
     box = page.locator("#block").bounding_box()
     frame = page.locator("#frame").bounding_box()
     assert (box["x"] - frame["x"], box["width"]) == pytest.approx((64, 32), abs=1)
+
+
+def reviewed(folder: Path, **changes: object) -> Path:
+    """Of a reference that was made anew."""
+    new = file(seed=2).write(folder / "new.exr")
+    verdict = compare(new, file(seed=1, scale=1.2).write(folder / "old.exr"))
+    path = folder / "report.html"
+    write_report(path, replace(verdict, **changes), Settings(), "ajar-compare new.exr old.exr")
+    return path
+
+
+def test_a_change_that_is_meant_is_no_failure(browser: Any, tmp_path: Path) -> None:
+    page = opened(browser, reviewed(tmp_path, review="changed reference"))
+    assert page.inner_text("#word") == "Changed reference"
+    assert page.get_attribute("#head", "class") == "review"
+    assert page.locator("td.fail").count() == 0
+    assert "differs" in page.inner_text("#gates")
+    page.keyboard.press("4")
+    assert page.inner_text("#left") == page.inner_text("#theirs") == "old reference"
+    assert page.problems == []
+
+
+def test_a_first_reference_is_shown_alone(browser: Any, tmp_path: Path) -> None:
+    first = {"review": "new reference", "problem": "nothing to compare with", "gates": []}
+    page = opened(browser, reviewed(tmp_path, **first))
+    assert page.inner_text("#word") == "New reference"
+    assert page.inner_text("#reason") == "Nothing to compare with"
+    assert page.locator("#modes button").count() == 1
+    assert shown(page) == "new"
+    assert not page.is_visible("#gates")
+    assert "reference" not in page.inner_text("#about")
+    assert page.problems == []
 
 
 def test_names_cannot_inject(tmp_path: Path) -> None:

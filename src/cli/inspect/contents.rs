@@ -24,7 +24,7 @@ pub(super) struct Contents<'a> {
     pub textures: Vec<TextureEntry<'a>>,
     pub lights: Vec<LightEntry<'a>>,
     pub cameras: Vec<CameraEntry<'a>>,
-    pub diagnostics: &'a [Diagnostic],
+    pub diagnostics: Vec<&'a Diagnostic>,
     /// Every value that scene files and command line set, and who did.
     pub settings: &'a [Setting],
     /// Every file that was read or looked for.
@@ -132,7 +132,7 @@ impl<'a> Contents<'a> {
                 .collect(),
             lights: scene.lights.iter().map(LightEntry::new).collect(),
             cameras: scene.cameras.iter().map(CameraEntry::new).collect(),
-            diagnostics: &loaded.file.diagnostics,
+            diagnostics: loaded.file.diagnostics.iter().chain(&loaded.added).collect(),
             settings: &loaded.file.settings,
             files: loaded.file.files.iter().map(|file| file.to_string_lossy().into_owned()).collect(),
         }

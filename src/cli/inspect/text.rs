@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use ajar_scene::{Diagnostic, Loss, Setting};
+use ajar_scene::{Loss, Setting};
 use serde_json::Value;
 
 use super::contents::{Bounds, Contents, Counts, MaterialEntry, NodeEntry, TextureEntry};
@@ -33,7 +33,7 @@ pub(super) fn describe(contents: &Contents<'_>, all: bool) -> String {
         section("textures", textures.iter().map(texture)),
         section("settings", settings(contents.settings)),
     ];
-    let told = |loss| diagnostics.iter().filter(move |it| it.loss == loss).map(Diagnostic::to_string);
+    let told = |loss| diagnostics.iter().filter(move |it| it.loss == loss).map(|it| it.to_string());
     sections.push(section("approximated", told(Some(Loss::Approximated))));
     sections.push(section("dropped", told(Some(Loss::Dropped))));
     sections.push(told(None).collect::<Vec<_>>().join("\n"));
@@ -47,7 +47,7 @@ fn settings(settings: &[Setting]) -> Vec<String> {
     if sources.len() < 2 {
         return Vec::new();
     }
-    let line = |Setting { key, value, by, over }: &Setting| {
+    let line = |Setting { key, value, by, over, .. }: &Setting| {
         let value = value.split_whitespace().collect::<Vec<_>>().join(" ");
         let over = if over.is_empty() { String::new() } else { format!(", over {}", over.join(", ")) };
         format!("{key} = {value} ({by}{over})")

@@ -45,6 +45,10 @@ impl Integrator for Ajar {
     }
 
     fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a> {
+        if cx.world.instances().is_empty() {
+            // There is nothing that light could come by to the camera.
+            return PathTracer.prepare(cx);
+        }
         let chains = PlainChains::new(cx);
         let Some(plan) = plan(&chains, self.always) else { return PathTracer.prepare(cx) };
         let (space, mutations, table) = (chains.space, chains.mutations, chains.table);

@@ -6,7 +6,7 @@ mod common;
 use ajar_integrators::{Settings, Window, integrators, path::PathTracer};
 use ajar_render::World;
 use ajar_scene::{Input, Material};
-use common::{Builder, pinhole, render, settings, shapes};
+use common::{Builder, pinhole, render, scenes::IMAGES, settings, shapes};
 use glam::{DVec3, Vec3};
 
 fn world() -> World {
@@ -27,14 +27,15 @@ fn world() -> World {
 
 #[test]
 fn thread_counts_give_the_same_bits() {
-    let world = world();
-    let settings = settings(&world, 7, 8, 4);
-    for integrator in integrators() {
-        let films = [1, 2, 7].map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| render(&world, *integrator, &settings, 3))
-        });
-        assert!(films.iter().all(|film| *film == films[0]), "{}", integrator.name());
+    for world in [world(), (IMAGES.world)()] {
+        let settings = settings(&world, 7, 8, 4);
+        for integrator in integrators() {
+            let films = [1, 2, 7].map(|threads| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| render(&world, *integrator, &settings, 3))
+            });
+            assert!(films.iter().all(|film| *film == films[0]), "{}", integrator.name());
+        }
     }
 }
 

@@ -4,13 +4,10 @@
 
 mod common;
 
-use std::{
-    f64::consts::{PI, TAU},
-    io::Cursor,
-};
+use std::f64::consts::{PI, TAU};
 
 use ajar_integrators::integrators;
-use ajar_scene::{Filter, Id, Image, ImageSource, Input, LightKind, Material, Texture, TextureInput};
+use ajar_scene::{Filter, Id, Input, LightKind, Material, Texture, TextureInput};
 use common::{Builder, diffuse, pinhole, render_blocks, settings, shapes};
 use glam::{DVec3, Vec3};
 
@@ -133,12 +130,9 @@ fn round_lights() {
 
 /// A texture of one column of pixels from top to bottom, in fractions of 255.
 fn column(b: &mut Builder, values: &[u8]) -> Id<Texture> {
-    let mut bytes = Cursor::new(Vec::new());
-    let image = image::RgbImage::from_fn(1, values.len() as u32, |_, y| image::Rgb([values[y as usize]; 3]));
-    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
-    let source = ImageSource::Embedded(bytes.into_inner().into());
-    let image = b.scene.images.push(Image { name: "column".into(), source });
-    b.scene.textures.push(Texture { filter: Filter::Nearest, ..Texture::new(image) })
+    let texture = b.texture([1, values.len() as u32], |_, y| [values[y as usize]; 3]);
+    b.scene.textures[texture].filter = Filter::Nearest;
+    texture
 }
 
 #[test]

@@ -121,7 +121,14 @@ impl Server {
         let (end, ended) = oneshot::channel();
         let access = Access { token: options.token.clone(), address };
         let pages = Arc::new(Semaphore::new(options.pages));
-        let room = Arc::new(Room { access, assets, shown: stage.0.subscribe(), program, pages });
+        let room = Arc::new(Room {
+            access,
+            assets,
+            shown: stage.0.subscribe(),
+            program,
+            pages,
+            most_pages: options.pages,
+        });
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         thread::Builder::new().name("server".into()).spawn(move || {
             runtime.block_on(async {
@@ -161,6 +168,7 @@ struct Room {
     shown: watch::Receiver<Shown>,
     program: Arc<dyn Program>,
     pages: Arc<Semaphore>,
+    most_pages: usize,
 }
 
 async fn serve(listener: TcpListener, room: Arc<Room>) -> io::Result<()> {
@@ -202,12 +210,14 @@ async fn open_socket(room: &Arc<Room>, parts: &mut Parts) -> Response {
     if !room.access.is_own_page(parts) {
         return StatusCode::FORBIDDEN.into_response();
     }
+    // Also for who does not ask for a WebSocket: scripts cannot read why they did not get one, but this.
+    let Ok(place) = Arc::clone(&room.pages).try_acquire_owned() else {
+        let why = format!("{} pages are open, no more can be: close one", room.most_pages);
+        return (StatusCode::SERVICE_UNAVAILABLE, why).into_response();
+    };
     let upgrade = match WebSocketUpgrade::from_request_parts(parts, &()).await {
         Ok(upgrade) => upgrade,
         Err(refused) => return refused.into_response(),
-    };
-    let Ok(place) = Arc::clone(&room.pages).try_acquire_owned() else {
-        return (StatusCode::SERVICE_UNAVAILABLE, "too many pages are open").into_response();
     };
     let (shown, program) = (room.shown.clone(), Arc::clone(&room.program));
     socket::limited(upgrade).on_upgrade(async move |socket| {

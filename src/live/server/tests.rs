@@ -338,6 +338,8 @@ fn there_is_a_place_for_so_many_pages_and_it_is_given_again() {
     let origin = format!("http://127.0.0.1:{}", bench.port());
     for _ in 0..100 {
         assert_eq!(bench.open_from(&origin).err(), Some(503));
+        let headers = format!("Host: 127.0.0.1:{}\r\nOrigin: {origin}\r\n", bench.port());
+        assert!(bench.ask(&format!("/{TOKEN}/socket"), &headers).contains("pages are open, no more can be"));
     }
     pages.iter_mut().for_each(|page| page.say("here"));
     assert!(pages.iter_mut().all(|page| page.hear().is_some()));

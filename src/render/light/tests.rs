@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_1_PI, PI};
 
 use super::*;
 use crate::{
-    chi2::{cell, integrals, p_value},
+    chi2::{DISC_CELLS, TRIANGLE_CELLS, cell, disc_cell, integrals, p_value, p_value_of_even, triangle_cell},
     math::scalar,
     rng::{Purpose, Rng},
 };
@@ -19,8 +19,6 @@ const ONE_SIDED: usize = 4;
 const TWO_SIDED: usize = 5;
 const SAMPLES: u32 = 200_000;
 const RADIUS: f64 = 3.0;
-/// Cells of a triangle or a disc: squares of its unit square.
-const SIDE: usize = 6;
 
 fn direction(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z).normalize()
@@ -60,10 +58,11 @@ fn rng(seed: u64) -> Rng {
     Rng::new(seed, Purpose::Test, 0, 0)
 }
 
-/// The cell of a point of the unit square.
-fn square_cell(u: [f64; 2]) -> usize {
-    let [row, column] = u.map(|u| (u * SIDE as f64) as usize);
-    row * SIDE + column
+/// Barycentric weights of a point of the triangle, by the areas that it cuts off.
+fn weights(triangle: &TriangleLight, p: DVec3) -> [f64; 2] {
+    let [a, b, c] = triangle.vertices;
+    let twice = |u: DVec3, v: DVec3| u.cross(v).dot(triangle.normal);
+    [twice(p - a, c - a), twice(b - a, p - a)].map(|area| area / (2.0 * triangle.area))
 }
 
 /// A light end of this emitter.
@@ -80,7 +79,7 @@ fn end(lights: &Lights, emitter: usize, rng: &mut Rng) -> Vertex {
 fn light_ends_follow_their_density() {
     let lights = lights();
     let n = f64::from(SAMPLES);
-    let places = [1, 1, 1, integrals(&|_| 0.0).len(), SIDE * SIDE, SIDE * SIDE];
+    let places = [1, 1, 1, integrals(&|_| 0.0).len(), TRIANGLE_CELLS, TRIANGLE_CELLS];
     let mut counts = places.map(|cells| vec![0.0; cells]);
     let mut rng = rng(1);
     for _ in 0..SAMPLES {
@@ -88,7 +87,7 @@ fn light_ends_follow_their_density() {
         assert!((lights.density(&x0) / density - 1.0).abs() < 1e-9);
         let place = match x0.kind {
             Kind::Environment => cell(x0.p),
-            Kind::Surface => square_cell(warp::triangle_to_square(x0.site.uv)),
+            Kind::Surface => triangle_cell(weights(lights.triangle(x0.emitter).unwrap(), x0.p)),
             _ => 0,
         };
         counts[x0.emitter as usize][place] += 1.0;
@@ -105,7 +104,7 @@ fn light_ends_follow_their_density() {
     for emitter in [ONE_SIDED, TWO_SIDED] {
         let x0 = end(&lights, emitter, &mut rng);
         let area = lights.triangle(x0.emitter).unwrap().area;
-        expected[emitter] = vec![lights.density(&x0) * area / (SIDE * SIDE) as f64; SIDE * SIDE];
+        expected[emitter] = vec![lights.density(&x0) * area / TRIANGLE_CELLS as f64; TRIANGLE_CELLS];
     }
     let total: f64 = expected.iter().flatten().sum();
     assert!((total - 1.0).abs() < 1e-3, "{total}");
@@ -118,6 +117,14 @@ fn light_ends_follow_their_density() {
     // Teeth: one light 5 % too likely.
     let wrong = choices.enumerate().map(|(i, (e, c))| (if i == SPOT { 1.05 * e } else { e }, c));
     assert!(p_value(wrong) < 1e-4);
+    // Teeth: a triangle whose first corner gets a little too much.
+    for emitter in [ONE_SIDED, TWO_SIDED] {
+        let p = p_value_of_even(TRIANGLE_CELLS, SAMPLES / 10, || {
+            let x0 = end(&lights, emitter, &mut rng);
+            triangle_cell(weights(lights.triangle(x0.emitter).unwrap(), x0.p).map(|b| b.powf(1.1)))
+        });
+        assert!(p < 1e-4, "{emitter}: {p}");
+    }
 }
 
 /// p-value of directions of emission from an end, against a density.
@@ -157,8 +164,7 @@ fn distant_light_falls_evenly_through_a_disc() {
         let mut rng = rng(4);
         let x0 = end(&lights, emitter, &mut rng);
         let frame = Frame::from_z(x0.p);
-        let mut counts = vec![0.0; SIDE * SIDE];
-        for _ in 0..SAMPLES {
+        let mut on_disc = || {
             let emission = lights.emit(&x0, rng.pair(), rng.f64()).unwrap();
             let from_centre = frame.to_local(emission.origin - lights.centre);
             // Outside the sphere around the scene, towards it, within its silhouette.
@@ -166,11 +172,16 @@ fn distant_light_falls_evenly_through_a_disc() {
             let on_disc = from_centre.truncate() / RADIUS;
             assert!(on_disc.length() < 1.0 + 1e-12);
             assert!((emission.density * PI * RADIUS * RADIUS - 1.0).abs() < 1e-12);
-            counts[square_cell(warp::disc_to_square(on_disc))] += 1.0;
-        }
-        let expected = f64::from(SAMPLES) / (SIDE * SIDE) as f64;
-        let p = p_value(counts.into_iter().map(|count| (expected, count)));
+            on_disc
+        };
+        let p = p_value_of_even(DISC_CELLS, SAMPLES, || disc_cell(on_disc()));
         assert!(p > 1e-4, "{emitter}: {p}");
+        // Teeth: a little too much light in the middle.
+        let p = p_value_of_even(DISC_CELLS, SAMPLES, || {
+            let p = on_disc();
+            disc_cell(p * p.length().powf(0.05))
+        });
+        assert!(p < 1e-4, "{emitter}: {p}");
     }
 }
 

@@ -12,7 +12,7 @@ use std::{
 use ajar_scene::{Cause, Diagnostic, Image, ImageSource};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::{Bitmap, Texels, exr, ktx2};
+use super::{Bitmap, Texels, exr, ktx2, tiff};
 
 /// Largest width and height.
 pub(super) const MAX_SIZE: usize = 16384;
@@ -63,6 +63,8 @@ pub fn decode(image: &Image, memory_limit: u64) -> Result<Decoded, Diagnostic> {
             exr::load(input)
         } else if ktx2::is_ktx2(head) {
             ktx2::load(input)
+        } else if let Some(header) = tiff::header(&mut input)? {
+            tiff::load(input, header)
         } else {
             read(input, memory_limit)
         }
@@ -80,6 +82,8 @@ pub(super) fn probe(image: &Image) -> Result<Header, Diagnostic> {
             return exr::header(input);
         } else if ktx2::is_ktx2(head) {
             return ktx2::header(input);
+        } else if let Some(header) = tiff::header(&mut input)? {
+            return Ok(header);
         }
         let decoder = reader(input)?.into_decoder().map_err(|e| e.to_string())?;
         let (width, height) = decoder.dimensions();
@@ -96,7 +100,7 @@ pub(super) fn probe(image: &Image) -> Result<Header, Diagnostic> {
 pub(super) fn too_large(image: &Image, bytes: u64, left: u64) -> Diagnostic {
     let mib = |bytes: u64| bytes.div_ceil(1 << 20);
     let why = format!("needs {} MiB, {} MiB are left for textures", mib(bytes), left >> 20);
-    let hint = "scale images down or raise the memory limit";
+    let hint = "scale images down or allow more with --memory-limit";
     refuse(image, &why).because(Cause::Resource).hint(hint)
 }
 

@@ -8,6 +8,7 @@ mod exr;
 mod ktx2;
 mod lookup;
 mod prepare;
+mod tiff;
 
 pub use bitmap::{Bitmap, Texels};
 pub use decode::{Decoded, decode};

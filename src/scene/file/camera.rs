@@ -1,6 +1,6 @@
 //! `[[camera]]`.
 
-use std::ops::Bound;
+use std::{collections::BTreeSet, ops::Bound};
 
 use glam::DAffine3;
 
@@ -18,10 +18,19 @@ const YFOV: f32 = 40.0;
 /// The keys that only a perspective camera has.
 const PERSPECTIVE: [&str; 4] = ["yfov", "lens_radius", "focus_distance", "shift"];
 
-/// Reads a camera and adds its node. `index` counts from 0. `complete` says that all imports were read, so that a camera
-/// to copy that is not there is the file's mistake.
-pub(super) fn read(mut keys: Keys<'_>, index: usize, scene: &mut Scene, complete: bool) {
+/// Reads a camera and adds its node. `index` counts from 0; `names` are those of the cameras before it. `complete` says
+/// that all imports were read, so that a camera to copy that is not there is the file's mistake.
+pub(super) fn read(
+    mut keys: Keys<'_>,
+    index: usize,
+    scene: &mut Scene,
+    names: &mut BTreeSet<String>,
+    complete: bool,
+) {
     let name = keys.optional("name", text).unwrap_or_else(|| format!("camera {}", index + 1));
+    if !names.insert(name.clone()) {
+        keys.complain("name", Complaint::new("another camera has this name"));
+    }
     let (base, place) = copied(&mut keys, scene, complete).unwrap_or_else(|| (default(), DAffine3::IDENTITY));
     let (transform, distance) = placement::camera(&mut keys, place);
     let exposure = keys.optional("exposure", number(0.0..)).map_or(base.exposure, |exposure| exposure as f32);

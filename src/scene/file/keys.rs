@@ -175,6 +175,7 @@ impl<'a> Keys<'a> {
             value: layer.source.written(value.span()),
             by: layer.source.name(),
             over: said.skip(1).map(|layer| layer.source.name()).collect(),
+            place: layer.source.place(&value.span()),
         });
     }
 

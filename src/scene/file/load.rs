@@ -1,6 +1,9 @@
 //! From the file to the scene.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
 
 use toml::de::DeTable;
 
@@ -93,8 +96,9 @@ fn read(
     for table in keys.tables("import", import_name) {
         complete &= add_import(table, &mut assets, &mut imported, import);
     }
+    let mut names = BTreeSet::new();
     for (index, table) in keys.tables("camera", own_name).into_iter().enumerate() {
-        camera::read(table, index, &mut assets.scene, complete);
+        camera::read(table, index, &mut assets.scene, &mut names, complete);
     }
     for (index, table) in keys.tables("light", own_name).into_iter().enumerate() {
         light::read(table, index, &mut assets);

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use toml::{Spanned, Value, de::DeTable};
+use toml::{Spanned, Table, Value, de::DeTable};
 
 use super::{
     layers::{self, Text},
@@ -44,6 +44,11 @@ impl Overrides {
             errors.push(complaint(&all.join(" --set "), error.message()));
         }
         if errors.is_empty() { Ok(Self { document, draft: None }) } else { Err(errors) }
+    }
+
+    /// The changes one by one, each a table that leads to its value. What is no change is left out.
+    pub fn tables<T: AsRef<str>>(changes: &[T]) -> Vec<Table> {
+        changes.iter().filter_map(|change| line(change.as_ref()).ok()?.parse().ok()).collect()
     }
 
     /// The same, below a scene file of this text which would be saved at `path`.
@@ -149,6 +154,14 @@ mod tests {
         }
         assert!(Overrides::parse(&["a.b=1", "a=1"]).is_err(), "a table and a number");
         assert!(Overrides::parse(&["a.b=1", "a.c=1"]).is_ok());
+    }
+
+    #[test]
+    fn changes_are_tables() {
+        let tables = Overrides::tables(&["render.spp=4", "nothing", "camera[1].yfov=30"]);
+        assert_eq!(tables.len(), 2);
+        assert_eq!(tables[0]["render"]["spp"].as_integer(), Some(4));
+        assert_eq!(tables[1]["camera"]["1"]["yfov"].as_integer(), Some(30));
     }
 
     #[test]

@@ -54,10 +54,15 @@ impl<'a> Report<'a> {
             self.untold.set(self.untold.get() + 1);
             return;
         }
+        let (line, column) = self.place(span);
+        self.found.borrow_mut().push(diagnostic.in_file(self.path).at(line, column));
+    }
+
+    /// Line and column, both from 1, where a span begins.
+    pub fn place(&self, span: &Range<usize>) -> (usize, usize) {
         let before = self.text.get(..span.start).unwrap_or(self.text);
         let line = before.matches('\n').count() + 1;
-        let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-        self.found.borrow_mut().push(diagnostic.in_file(self.path).at(line, column));
+        (line, before.chars().rev().take_while(|&c| c != '\n').count() + 1)
     }
 
     /// Adds a diagnostic about an element that stands on the command line.

@@ -1,12 +1,16 @@
 //! `[render]` and `[output]`.
 
-use std::ops::Bound;
+use std::{
+    ops::Bound,
+    path::{Component, PathBuf},
+};
 
 use toml::de::DeValue;
 
 use super::{
     keys::Keys,
     report::Complaint,
+    source::Source,
     value::{ANY, flag, number, numbers, quantity, text, texts, whole},
 };
 use crate::{OutputSettings, RenderSettings, parse_duration, parse_percent};
@@ -45,8 +49,8 @@ pub(super) fn render(mut keys: Keys<'_>) -> RenderSettings {
 /// Reads `[output]`.
 pub(super) fn output(mut keys: Keys<'_>) -> OutputSettings {
     let settings = OutputSettings {
-        path: keys.optional("path", text).map(Into::into),
-        png: keys.optional("png", text).map(Into::into),
+        path: keys.optional_of("path", file_to_write("exr")),
+        png: keys.optional_of("png", file_to_write("png")),
         tone_map: keys.optional("tone_map", text),
         exposure: keys.optional("exposure", number(ANY)),
         aov: keys.optional("aov", texts),
@@ -54,6 +58,24 @@ pub(super) fn output(mut keys: Keys<'_>) -> OutputSettings {
     };
     keys.finish();
     settings
+}
+
+/// The name of a file that will be written. A scene that came from somebody else must not write anywhere else than in the
+/// current folder, where it is rendered; the command line may.
+fn file_to_write(ending: &str) -> impl Fn(&DeValue<'_>, &Source<'_>) -> Result<PathBuf, Complaint> + '_ {
+    move |value, source| {
+        let path = PathBuf::from(text(value)?);
+        if !path.extension().is_some_and(|it| it.eq_ignore_ascii_case(ending)) {
+            return Err(Complaint::new(format!("must end with .{ending}")));
+        }
+        let is_inside =
+            path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        if is_inside || source.is_command_line() {
+            return Ok(path);
+        }
+        let complaint = Complaint::new("must lie in the current folder");
+        Err(complaint.hint(Some("name other folders on the command line, by -o".into())))
+    }
 }
 
 fn size(value: &DeValue<'_>) -> Result<[u32; 2], Complaint> {

@@ -1,12 +1,16 @@
 //! Who says something: a scene file, a file that it extends, or the command line.
 
-use std::{cell::RefCell, ops::Range, path::Path};
+use std::{
+    cell::RefCell,
+    ops::Range,
+    path::{Path, PathBuf},
+};
 
 use serde::Serialize;
 use toml::{Spanned, de::DeTable};
 
 use super::report::{Complaint, Report};
-use crate::{Diagnostic, ImportRequest};
+use crate::{Cause, Diagnostic, ImportRequest};
 
 /// What the command line is called.
 const COMMAND_LINE: &str = "--set";
@@ -22,6 +26,28 @@ pub struct Setting {
     pub by: String,
     /// Those that say it too and are overruled.
     pub over: Vec<String>,
+    /// Where it says it: file, line and column; none for the command line.
+    #[serde(skip)]
+    pub place: Option<(PathBuf, (usize, usize))>,
+}
+
+impl Setting {
+    /// A complaint about a key or table, which is its element: where a file says it, the file has to change.
+    pub fn blame(settings: &[Self], complaint: Diagnostic) -> Diagnostic {
+        let said = complaint.element.as_deref().and_then(|element| {
+            let is_meant = |key: &str| {
+                key.strip_prefix(element).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+            };
+            settings.iter().find(|setting| is_meant(&setting.key))
+        });
+        match said.and_then(|setting| setting.place.clone()) {
+            Some((file, (line, column))) => {
+                let cause = if complaint.cause == Cause::Usage { Cause::Asset } else { complaint.cause };
+                complaint.because(cause).in_file(file).at(line, column)
+            }
+            None => complaint,
+        }
+    }
 }
 
 /// One of those who say something.
@@ -52,6 +78,11 @@ impl<'a> Source<'a> {
             return COMMAND_LINE.to_owned();
         }
         self.request.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// File, line and column of a value.
+    pub fn place(&self, span: &Range<usize>) -> Option<(PathBuf, (usize, usize))> {
+        (!self.is_command_line).then(|| (self.request.path.clone(), self.report.place(span)))
     }
 
     /// A value as it is written there.

@@ -1,9 +1,12 @@
 //! `ajar watch`: what is saved is what is rendered.
 
+mod command;
+mod edits;
 mod faults;
 mod page;
 mod saves;
 mod snapshots;
+mod socket;
 mod studio;
 
 use std::{
@@ -37,8 +40,15 @@ impl Watch {
 
     /// With these environment variables.
     fn start_with(bench: &Bench, arguments: &str, variables: &[(&str, &str)]) -> Self {
+        Self::run(bench, &format!("{arguments} --port 0"), variables)
+    }
+
+    /// At the port that it chooses itself.
+    fn run(bench: &Bench, arguments: &str, variables: &[(&str, &str)]) -> Self {
         thread::sleep(CLOCK);
-        let mut command = bench.command(&format!("watch {arguments} --log-format json --port 0 -v"));
+        let mut command = bench.command(&format!("watch {arguments} --log-format json -v"));
+        // What it remembers is not for the user who runs tests.
+        command.env("XDG_STATE_HOME", bench.path("state"));
         let mut child = command.envs(variables.iter().copied()).spawn().unwrap();
         let lines = BufReader::new(child.stderr.take().unwrap()).lines();
         let (sender, messages) = channel();
@@ -73,10 +83,15 @@ impl Watch {
         self.wait_for(|it| it["severity"] == "error")
     }
 
-    /// Asks it to end and returns all that it said before it did.
-    fn end(mut self) -> Vec<Value> {
+    /// Asks it to end.
+    fn interrupt(&self) {
         let id = self.child.id().to_string();
         assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    }
+
+    /// Asks it to end and returns all that it said before it did.
+    fn end(mut self) -> Vec<Value> {
+        self.interrupt();
         let rest = self.messages.iter().collect();
         assert_eq!(self.child.wait().unwrap().code(), Some(0));
         rest

@@ -8,5 +8,6 @@
 6. `flip`: what a person would see.
 7. `numbers`: layers, and the classic error measures.
 
-A gate is a function of two pictures and the settings. It does not know the others.
+A gate is a function of two pictures and the settings. It does not know the others, but for `flip`, which is told why
+`statistical` did not judge.
 """

@@ -17,7 +17,7 @@ from ajar_tools.gates.noise import other_rounds, unusable
 from ajar_tools.picture import Picture
 from ajar_tools.settings import Settings
 from ajar_tools.statistics import SIDES, WHOLE, BlockStatistics, block_means
-from ajar_tools.student import two_sided_t
+from ajar_tools.student import critical_t, two_sided_t
 from ajar_tools.verdict import GateResult, Status
 
 LEVELS = (WHOLE, 64, 16, 8)
@@ -56,9 +56,11 @@ def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
     tests = {side: Level(new, reference, ours, theirs, side) for side in LEVELS}
     findings = [worst(test, settings.alpha * LEVEL_SHARE) for test in tests.values()]
     scatter = excess_scatter(tests[8], settings)
+    change = smallest_change(tests[WHOLE], settings.alpha * LEVEL_SHARE)
     numbers = {
         "blocks": {str(f.side or "image"): {"t": f.t, "p": f.p, "limit": f.limit} for f in findings},
         "scatter": scatter.value if scatter else None,
+        "smallest_change": change,
         "rounds": [ours.rounds, theirs.rounds],
     }
     failing = [f for f in findings if f.p < f.limit]
@@ -72,7 +74,10 @@ def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
         message = f"blocks scatter {scatter.value:.2f} times as much as the noise that the files declare"
         return GateResult("statistics", Status.FAIL, message, numbers)
     weakest = min(findings, key=lambda f: f.p / f.limit)
-    return GateResult("statistics", Status.PASS, f"no block differs by more than noise; {summary(weakest)}", numbers)
+    message = f"no block differs by more than noise; {summary(weakest)}"
+    if math.isfinite(change):
+        message += f"; {100 * change:.2g} % more or less light would have been seen"
+    return GateResult("statistics", Status.PASS, message, numbers)
 
 
 class Level:
@@ -95,9 +100,10 @@ class Level:
         rounding = (max(new.rounding(), reference.rounding()) * np.maximum(a, b)) ** 2
         # What the last bits of another processor do to a pixel without noise is no difference.
         floor = rounding + (1e-6 * max(float(a.mean()), float(b.mean()))) ** 2 + 1e-70
-        self.difference = a - b
-        self.t = self.difference / np.sqrt(variance + floor)
-        self.relative = self.difference / np.maximum(b, 1e-6 * float(b.mean()) + 1e-35)
+        difference, error = a - b, np.sqrt(variance + floor)
+        self.t = difference / error
+        base = np.maximum(b, 1e-6 * float(b.mean()) + 1e-35)
+        self.relative, self.relative_error = difference / base, error / base
 
 
 def welch(ours: BlockStatistics, theirs: BlockStatistics, side: int) -> tuple[np.ndarray, np.ndarray]:
@@ -128,6 +134,12 @@ def worst(test: Level, alpha: float) -> Finding:
     return Finding(test.side, row, column, channel, t, float(p.min()), limit, relative, failing)
 
 
+def smallest_change(whole: Level, alpha: float) -> float:
+    """The relative change of all light that the level of the whole image sees every other time, in its best channel."""
+    freedom = np.broadcast_to(whole.freedom, whole.t.shape).reshape(-1)
+    return float((critical_t(alpha / freedom.size, freedom) * whole.relative_error.reshape(-1)).min())
+
+
 @dataclass(frozen=True)
 class Scatter:
     """Mean squared difference of blocks in standard errors, 1 where the declared noise is the true one."""
@@ -150,7 +162,7 @@ def excess_scatter(test: Level, settings: Settings) -> Scatter | None:
         return None
     value = float(mean[noisy].mean())
     error = math.sqrt(max(neighbour_covariance(np.where(noisy, mean - value, 0.0)), 1e-12)) / count
-    limit = settings.dispersion + NormalDist().inv_cdf(1 - settings.alpha * SCATTER_SHARE) * error
+    limit = settings.dispersion - NormalDist().inv_cdf(settings.alpha * SCATTER_SHARE) * error
     return Scatter(value, value > limit)
 
 

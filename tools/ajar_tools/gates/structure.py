@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 from ajar_tools.picture import CannotCompareError, Picture
 from ajar_tools.settings import Settings
 from ajar_tools.verdict import GateResult, Status
 
 # Colours of other primaries or another encoding are other colours, whatever the numbers say.
 COLOR_SPACE = ("chromaticities", "colorInteropID")
+# Chromaticities that differ by no more than this are those of one standard, written to other places.
+CHROMATICITY = 1e-4
 # Optional planes: asking for a variance layer does not change the picture.
 OPTIONAL = ("variance.",)
 
@@ -40,10 +45,10 @@ def check_windows(new: Picture, reference: Picture, settings: Settings) -> None:
     if (a.width, a.height) != (b.width, b.height):
         sizes = f"{a.width}×{a.height} and {b.width}×{b.height} pixels"
         raise CannotCompareError(f"{new.path} and {reference.path} have {sizes}, and images are never resampled")
-    if settings.other_renderer:
-        return
     if a != b:
         raise CannotCompareError(f"the data windows differ: {a} in {new.path}, {b} in {reference.path}")
+    if settings.other_renderer:
+        return
     a, b = new.display_window, reference.display_window
     if a != b:
         raise CannotCompareError(f"the display windows differ: {a} in {new.path}, {b} in {reference.path}")
@@ -70,6 +75,15 @@ def channel_problems(new: Picture, reference: Picture) -> list[str]:
     return problems
 
 
+def agree(name: str, a: Any, b: Any) -> bool:
+    """Whether two values of an attribute are the same; chromaticities but for rounding, or to how many places they are
+    known.
+    """
+    if name == "chromaticities" and isinstance(a, tuple) and isinstance(b, tuple) and len(a) == len(b):
+        return all(math.isclose(x, y, rel_tol=0, abs_tol=CHROMATICITY) for x, y in zip(a, b, strict=True))
+    return bool(a == b)
+
+
 def metadata_problems(new: Picture, reference: Picture, settings: Settings) -> list[str]:
     """Attributes that must agree, and renders that were interrupted."""
     problems = []
@@ -80,6 +94,6 @@ def metadata_problems(new: Picture, reference: Picture, settings: Settings) -> l
         a, b = new.attributes.get(name), reference.attributes.get(name)
         if name in settings.require and (a is None or b is None):
             problems.append(f"the attribute {name} is missing")
-        elif a is not None and b is not None and a != b:
+        elif a is not None and b is not None and not agree(name, a, b):
             problems.append(f"the attribute {name} is {a!r} instead of {b!r}")
     return problems

@@ -32,7 +32,7 @@ def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
         return GateResult("variance", Status.SKIP, reason)
     assert ours is not None
     assert theirs is not None
-    critical = NormalDist().inv_cdf(1 - settings.alpha * SHARE / 2)
+    critical = -NormalDist().inv_cdf(settings.alpha * SHARE / 2)
     ratios: dict[str, float] = {}
     problems = []
     for side in SIDES:

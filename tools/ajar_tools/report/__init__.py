@@ -14,7 +14,7 @@ import numpy as np
 
 from ajar_tools.gates.flip import flip_map, shrunk
 from ajar_tools.gates.statistical import Level
-from ajar_tools.picture import Picture
+from ajar_tools.picture import COLORS, Picture
 from ajar_tools.report.encode import data_uri, shared_exponent
 from ajar_tools.report.strip import strip
 from ajar_tools.settings import Settings
@@ -61,13 +61,14 @@ def write_strip(path: Path, verdict: Verdict) -> bool:
         return False
     assert verdict.pictures
     new, reference = verdict.pictures
-    path.write_bytes(strip(new, reference, exposure(reference.color)))
+    path.write_bytes(strip(new, None if verdict.problem else reference, exposure(reference.color)))
     return True
 
 
 def can_be_shown(verdict: Verdict) -> bool:
-    """Whether there are images, of numbers."""
-    return verdict.pictures is not None and all(np.isfinite(p.color).all() for p in verdict.pictures)
+    """Whether there are images, of colours that are numbers."""
+    pictures = verdict.pictures or ()
+    return bool(pictures) and all(any(map(p.has, COLORS)) and np.isfinite(p.color).all() for p in pictures)
 
 
 def resource(name: str) -> str:

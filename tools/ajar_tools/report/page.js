@@ -4,12 +4,17 @@
 const $ = (id) => document.getElementById(id);
 const WARM = "linear-gradient(90deg, #00f, #fff, #f00)";
 const HOT = `linear-gradient(90deg, ${HEAT.map((c) => `rgb(${c})`)})`;
+// A reference that was made anew is reviewed, not judged: beside the one of before, if there was one.
+const { review } = data.verdict;
+const alone = Boolean(review && data.verdict.problem);
+const THEIRS = review ? "old reference" : "reference";
+const capital = (text) => text[0].toUpperCase() + text.slice(1);
 // Name, title, hint, and of maps the colours from one value to another.
 const MODES = [
-  ["swap", "Swap", "Hold the mouse button over the image, or the space bar, to see the reference; B blinks."],
-  ["wipe", "Wipe", "Move over the image: the new one is left of the line, the reference right of it."],
+  ["swap", "Swap", "Hold the mouse button over the image, or the space bar, to see the other one; B blinks."],
+  ["wipe", "Wipe", `Move over the image: the new one is left of the line, the ${THEIRS} right of it.`],
   ["new", "New", "The new image."],
-  ["reference", "Reference", "The image that is right."],
+  ["reference", capital(THEIRS), review ? "The image that was right before." : "The image that is right."],
   ["difference", "Difference", "Red where the new image is brighter, blue where it is darker.", WARM, "−50 %", "+50 %"],
   ["significance", "Beyond noise", "How far 8×8 blocks differ; noise alone stays dark.", HOT],
   ["flip", "FLIP", "What a person would notice when the images are swapped.", HOT, "nothing", "everything"],
@@ -21,18 +26,24 @@ const planes = {};
 
 function writeText() {
   const v = data.verdict;
-  $("head").className = v.outcome;
-  $("word").textContent = { pass: "Same picture", fail: "Different picture", cannot: "Cannot compare" }[v.outcome];
+  const words = { pass: "Same picture", fail: "Different picture", cannot: "Cannot compare" };
+  $("head").className = review ? "review" : v.outcome;
+  $("word").textContent = review ? capital(review) : words[v.outcome];
   $("reason").textContent = v.reason;
-  $("names").textContent = `${v.new}, compared with ${v.reference}`;
+  $("names").textContent = alone ? v.new : `${v.new}, compared with ${v.reference}`;
+  $("theirs").textContent = alone ? "" : THEIRS;
+  $("gates").hidden = !v.gates.length;
   $("command").textContent = data.command;
   $("numbers").textContent = JSON.stringify(v.gates, null, 1);
   v.gates.forEach((gate, i) => {
-    const row = addRow($("gates"), [`${i + 1}  ${gate.gate}`, gate.status, gate.message]);
-    row.cells[1].className = gate.status;
+    // A change that is meant is no failure.
+    const status = review && gate.status === "fail" ? "differs" : gate.status;
+    const row = addRow($("gates"), [`${i + 1}  ${gate.gate}`, status, gate.message]);
+    row.cells[1].className = status;
   });
   for (const line of v.exceptions) addRow($("gates"), ["", "excused", line]);
-  for (const line of data.about || []) addRow($("about"), line);
+  for (const line of v.warnings) addRow($("gates"), ["", "warning", line]).cells[1].className = "warning";
+  for (const line of data.about || []) addRow($("about"), alone ? line.slice(0, 2) : line);
   $("copy").onclick = async () => {
     await navigator.clipboard?.writeText(data.command);
     $("copy").textContent = "copied";
@@ -54,8 +65,6 @@ function paint(context, mode) {
     const x = Math.round(state.wipe * width);
     show(planes.reference);
     if (x > 0) context.drawImage(planes.new, 0, 0, x, height, 0, 0, x, height);
-    context.fillStyle = "#ffd60a";
-    context.fillRect(x, 0, Math.max(1, width / 1000), height);
   } else if (mode === "significance" || mode === "flip") {
     // The last blocks may reach beyond the image, or not fill it.
     const side = (mode === "flip" ? data.flip_factor : 8) / data.factor;
@@ -69,8 +78,10 @@ function draw() {
   const shown = state.mode === "swap" ? (state.held ? "reference" : "new") : state.mode;
   paint($("canvas").getContext("2d"), shown);
   $("canvas").dataset.shown = shown;
-  $("left").textContent = shown === "wipe" ? "new" : shown === "new" || shown === "reference" ? shown : "";
-  $("right").textContent = shown === "wipe" ? "reference" : "";
+  $("left").textContent = { wipe: "new", new: "new", reference: THEIRS }[shown] || "";
+  $("right").textContent = shown === "wipe" ? THEIRS : "";
+  $("line").hidden = shown !== "wipe";
+  $("line").style.left = `${100 * state.wipe}%`;
 }
 
 function drawThumbs() {
@@ -78,7 +89,10 @@ function drawThumbs() {
     const context = button.querySelector("canvas").getContext("2d");
     const scale = Math.min(context.canvas.width / data.width, context.canvas.height / data.height);
     context.setTransform(scale, 0, 0, scale, 0, 0);
-    paint(context, button.dataset.mode === "swap" ? "new" : button.dataset.mode);
+    const { mode } = button.dataset;
+    paint(context, mode === "swap" ? "new" : mode);
+    context.fillStyle = "#ffd60a";
+    if (mode === "wipe") context.fillRect(state.wipe * data.width, 0, 1 / scale, data.height);
   }
 }
 
@@ -102,6 +116,7 @@ function setMode(mode) {
   const note = data.factor > 1 ? ` Each pixel here is the mean of ${data.factor}×${data.factor}.` : "";
   $("hint").textContent = hint + note;
   $("scale").hidden = !colours;
+  $("exposure").disabled = Boolean(colours);
   $("scale").style.setProperty("--colours", colours || "none");
   $("low").textContent = low || `${data.significant[0]}`;
   $("high").textContent = high || `${data.significant[1]} standard errors`;
@@ -126,7 +141,7 @@ function readPixel(event) {
   const text = (linear) => Array.from(linear.slice(at, at + 3), (v) => v.toPrecision(3).padStart(9)).join(" ");
   const place = `(${x * data.factor + data.origin[0]}, ${y * data.factor + data.origin[1]})`;
   $("pixel").textContent =
-    `pixel ${place}   new ${text(planes.newLinear)}   reference ${text(planes.referenceLinear)}`;
+    `pixel ${place}   new ${text(planes.newLinear)}` + (alone ? "" : `   ${THEIRS} ${text(planes.referenceLinear)}`);
 }
 
 function hold(held) {
@@ -135,6 +150,7 @@ function hold(held) {
 }
 
 function toggleBlink() {
+  if (alone) return;
   clearInterval(state.blink);
   state.blink = state.blink ? 0 : setInterval(() => hold(!state.held), 500);
   setMode("swap");
@@ -172,7 +188,7 @@ function listen() {
 }
 
 function addButtons() {
-  const modes = MODES.filter(([mode]) => mode !== "significance" || data.significance);
+  const modes = MODES.filter(([mode]) => (alone ? mode === "new" : mode !== "significance" || data.significance));
   modes.forEach(([mode, title], i) => {
     const button = $("modes").appendChild(document.createElement("button"));
     const thumb = button.appendChild(document.createElement("canvas"));
@@ -196,7 +212,7 @@ async function showImages() {
   addButtons();
   $("exposure").value = data.exposure;
   setExposure(data.exposure);
-  setMode("swap");
+  setMode(alone ? "new" : "swap");
   listen();
   layout();
   document.body.dataset.ready = "yes";

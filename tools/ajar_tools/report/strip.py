@@ -13,10 +13,15 @@ MOST_ROWS = 144
 GAP = 4
 
 
-def strip(new: Picture, reference: Picture, stops: float) -> bytes:
-    """A PNG, as bright as the report is at first; the difference is that of planes.js."""
-    factor = max(1, reference.data_window.height // MOST_ROWS)
-    ours, theirs = (shrunk(picture.color, factor) for picture in (new, reference))
+def strip(new: Picture, reference: Picture | None, stops: float) -> bytes:
+    """A PNG, as bright as the report is at first; the difference is that of planes.js. The new image alone without
+    reference.
+    """
+    factor = max(1, new.data_window.height // MOST_ROWS)
+    ours = shrunk(new.color, factor)
+    if reference is None:
+        return png(toned(ours, stops))
+    theirs = shrunk(reference.color, factor)
     white = np.full((ours.shape[0], GAP, 3), 255.0)
     return png(np.hstack([toned(theirs, stops), white, toned(ours, stops), white, difference(ours, theirs)]))
 

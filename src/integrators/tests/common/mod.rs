@@ -12,9 +12,11 @@ use ajar_render::{
     film::Film,
     world::{PrepareOptions, prepare},
 };
-use ajar_scene::{Camera, Id, Input, Light, LightKind, Material, Mesh, Node, Projection, Scene};
+use ajar_scene::{
+    Camera, Id, Image, ImageSource, Input, Light, LightKind, Material, Mesh, Node, Projection, Scene, Texture,
+};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
-use std::sync::atomic::AtomicBool;
+use std::{io::Cursor, sync::atomic::AtomicBool};
 
 /// Adds meshes, lights and the camera to a scene.
 #[derive(Default)]
@@ -38,6 +40,16 @@ impl Builder {
             double_sided: false,
             ..diffuse(Vec3::ZERO)
         })
+    }
+
+    /// A texture of 8 bits a channel, read as it is.
+    pub fn texture(&mut self, [width, height]: [u32; 2], color: impl Fn(u32, u32) -> [u8; 3]) -> Id<Texture> {
+        let mut bytes = Cursor::new(Vec::new());
+        let image = image::RgbImage::from_fn(width, height, |x, y| image::Rgb(color(x, y)));
+        image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        let source = ImageSource::Embedded(bytes.into_inner().into());
+        let image = self.scene.images.push(Image { name: "image".into(), source });
+        self.scene.textures.push(Texture::new(image))
     }
 
     pub fn mesh(&mut self, mut mesh: Mesh, material: Id<Material>) -> &mut Self {

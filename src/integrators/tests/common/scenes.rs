@@ -1,7 +1,7 @@
 //! The scenes that integrators must agree on.
 
 use ajar_render::World;
-use ajar_scene::{AlphaMode, Input, LightKind, Material, Projection};
+use ajar_scene::{AlphaMode, Id, Input, LightKind, Material, NormalMap, Projection, Texture, TextureInput};
 use glam::{DVec3, Vec3};
 
 use super::{Builder, diffuse, pinhole, shapes};
@@ -32,6 +32,7 @@ pub const SCENES: &[TestScene] = &[
     scene("thin lens", 5, thin_lens),
     scene("orthographic", 5, orthographic),
     scene("partial opacity", 5, partial_opacity),
+    IMAGES,
 ];
 
 /// A room with coloured walls, open to the camera, and a lamp under its ceiling.
@@ -220,6 +221,51 @@ fn partial_opacity() -> World {
     });
     b.mesh(shapes::quad(Vec3::new(-0.8, 0.3, -0.6), Vec3::X * 1.6, Vec3::Z * 1.4), veil);
     b.mesh(shapes::quad(Vec3::new(-0.8, -0.9, 0.3), Vec3::X * 0.9, Vec3::Y * 0.9), veil);
+    b.world(32)
+}
+
+/// A surface whose colour, roughness and normals come from images. Needs normals and texture coordinates.
+pub fn plaster(b: &mut Builder) -> Id<Material> {
+    let angle = |texel: u32| std::f32::consts::TAU * texel as f32 / 8.0;
+    let color =
+        b.texture([8, 8], |x, y| [90 + 20 * x as u8, 200 - 15 * y as u8, 100 + 30 * (x ^ y) as u8 / 2]);
+    let roughness = b.texture([8, 1], |x, _| [130 + 15 * x as u8; 3]);
+    let normals = b.texture([8, 8], |x, y| {
+        let n = Vec3::new(0.4 * angle(x).sin(), 0.4 * angle(y).cos(), 1.0).normalize();
+        (n * 0.5 + 0.5).to_array().map(|c| (c * 255.0).round() as u8)
+    });
+    let read = |texture| Some(TextureInput { texture, channel: Default::default() });
+    b.material(Material {
+        base_color: Input { value: Vec3::splat(0.9), texture: read(color) },
+        roughness: Input { value: 1.0, texture: read(roughness) },
+        normal_map: Some(NormalMap { texture: normals, scale: 1.0 }),
+        ..Material::default()
+    })
+}
+
+/// A blue sky over brown earth, with a bright spot.
+pub fn sky(b: &mut Builder) -> Id<Texture> {
+    b.texture([8, 4], |x, y| match (x, y) {
+        (3, 1) => [255, 230, 180],
+        (_, 0 | 1) => [60 + 8 * x as u8, 100, 160 - 10 * x as u8],
+        _ => [50, 40, 30],
+    })
+}
+
+/// Textures, normal maps and surroundings from images, through a thin lens.
+pub const IMAGES: TestScene = scene("images", 5, images);
+
+fn images() -> World {
+    let mut b = Builder::default();
+    let (plaster, white) = (plaster(&mut b), b.diffuse(Vec3::splat(0.7)));
+    let low = Vec3::splat(-1.0);
+    b.mesh(shapes::board(low, Vec3::Z * 2.0, Vec3::X * 2.0), plaster);
+    b.mesh(shapes::board(low, Vec3::X * 2.0, Vec3::Y * 2.0), plaster);
+    b.mesh(shapes::sphere(Vec3::new(0.3, -0.4, 0.2), 0.4, 8, true), white);
+    let texture = Some(sky(&mut b));
+    b.light(LightKind::Environment { radiance: 2.0, texture }, DVec3::ZERO, DVec3::NEG_Z);
+    let lens = Projection::Perspective { yfov: 0.7, lens_radius: 0.1, focus_distance: 3.4, shift: [0.0; 2] };
+    b.camera(lens, DVec3::new(0.0, 0.1, 3.8), DVec3::ZERO);
     b.world(32)
 }
 

@@ -13,6 +13,11 @@ pub fn quad(o: Vec3, a: Vec3, b: Vec3) -> Mesh {
     }
 }
 
+/// A [`quad`] with normals, which normal maps need.
+pub fn board(o: Vec3, a: Vec3, b: Vec3) -> Mesh {
+    Mesh { normals: Some(vec![a.cross(b).normalize(); 4]), ..quad(o, a, b) }
+}
+
 /// An axis-aligned box; its front faces outwards, or inwards.
 pub fn cuboid(low: Vec3, high: Vec3, inwards: bool) -> Mesh {
     let d = high - low;

@@ -86,6 +86,17 @@ fn sixteen_bits_and_floats_are_kept() {
 }
 
 #[test]
+fn grey_floats_in_tiff_are_kept() {
+    use ::tiff::encoder::{TiffEncoder, colortype::Gray32Float};
+    let floats: Vec<f32> = (0..6).map(|i| i as f32 * 100.5 - 3.0).collect();
+    let mut file = Cursor::new(Vec::new());
+    TiffEncoder::new(&mut file).unwrap().write_image::<Gray32Float>(3, 2, &floats).unwrap();
+    let image = bitmap(file.into_inner());
+    assert_eq!((image.width(), image.height(), image.channels()), (3, 2, 1));
+    assert_eq!(image.texels(), &Texels::F32(floats));
+}
+
+#[test]
 fn radiance_files_keep_high_radiance() {
     let pixels: Vec<_> = (0..6).map(|i| image::Rgb([2000.0f32, i as f32, 0.25])).collect();
     let mut bytes = Vec::new();
