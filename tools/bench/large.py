@@ -7,8 +7,8 @@
 writes a GLB of five million triangles (a rough sheet with normals) and renders it at one sample a pixel, by path
 tracing and by default: reading, building the hierarchy, learning, one round, writing. `--triangles` takes another size,
 `--threads` another number of threads; `--keep FILE` leaves the GLB there, for `importers/examples/parse.rs`. The most
-memory that the process holds is told beside what it holds in the end, which is the prepared world with its film (needs
-Linux).
+memory that the last run holds is told beside what it holds while pixels are made, which is the prepared world with its
+film (needs Linux).
 """
 
 import argparse
@@ -74,17 +74,17 @@ def held(pid):
 
 
 def measure(command):
-    """Seconds on the clock, seconds of processors, the most memory and that in the end, in bytes."""
-    start, last, ended = time.perf_counter(), 0, 0
+    """Seconds on the clock, seconds of processors, the most memory and that late in the run, in bytes."""
+    start, samples, ended = time.perf_counter(), [], 0
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     while not ended:
-        last = held(process.pid) or last
+        samples.append(held(process.pid))
         time.sleep(0.002)
         ended, status, usage = os.wait4(process.pid, os.WNOHANG)
     seconds = time.perf_counter() - start
     if status != 0:
         raise SystemExit(f"{' '.join(command)} failed with status {status}")
-    return seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, last
+    return seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, np.median(samples[len(samples) * 3 // 4 :])
 
 
 def main():
@@ -107,11 +107,9 @@ def main():
             ("first pixels by path", [*image, "--spp", "1", "--integrator", "path"]),
             ("first pixels by ajar", [*image, "--spp", "1", "--integrator", "ajar"]),
         ]:
-            clock, processor, most, last = measure([program, *command])
-            print(
-                f"{name:24} {clock:6.2f} s, {processor:6.2f} s of processors, at most {most / 2**30:.2f} GiB, "
-                f"{most / last:.2f} times the {last / 2**30:.2f} in the end"
-            )
+            clock, processor, most, late = measure([program, *command])
+            print(f"{name:24} {clock:6.2f} s, {processor:6.2f} s of processors, at most {most / 2**30:.2f} GiB")
+        print(f"that is {most / late:.2f} times the {late / 2**30:.2f} GiB that the last run held late")
 
 
 if __name__ == "__main__":
