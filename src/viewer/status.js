@@ -30,7 +30,8 @@ export function showState(state) {
   const noise = state.noise === null ? "noise not yet known" : `noise ${percent(state.noise)} (worst ${percent(state.worst_tile)})`;
   const left = state.seconds_left === null || state.phase !== "rendering" ? "" : `, about ${duration(state.seconds_left)} left`;
   const [width, height] = state.size;
-  const rounds = state.rounds ? `${state.samples} samples a pixel, ${noise}, ${duration(state.seconds)}${left}` : "no round finished yet";
+  const rounds = state.rounds ? `${state.samples} samples a pixel, ${noise}, ${duration(state.seconds)}${left}`
+    : `no round finished yet${state.samples ? `, eye paths of ${state.samples} samples a pixel meanwhile` : ""}`;
   $("numbers").textContent = state.image === 0 ? "" : `${width}×${height}, ${rounds}`;
   $("changed").textContent = state.shown_for.length ? `changed: ${state.shown_for.join(", ")}` : "";
   $("rejected").textContent = state.rejected > 0 ? `${state.rejected} contributions were negative or not finite and are left out` : "";
