@@ -23,15 +23,18 @@ pub struct Plan {
 /// What a pixel takes at most, from the film to the files: sums and squares of three channels at 16 bytes, a round's at 8,
 /// what its eye rays meet, and the picture twice.
 const BYTES_A_PIXEL: u64 = 256;
+/// What an image may take however low the limit is: one for geometry and textures is not meant to forbid pictures.
+const ALWAYS: u64 = 1 << 30;
 
 impl Plan {
-    /// Checks that the image takes no more than this much memory.
+    /// Checks that the image takes no more than this much memory, a gigabyte where that is less.
     ///
     /// # Errors
     /// It does; of the cause [`Cause::Resource`], about the key `render.size`.
     pub fn check_memory(&self, limit: u64) -> Result<(), Diagnostic> {
         let window = self.settings.window;
         let bytes = u64::from(window.width()) * u64::from(window.height()) * BYTES_A_PIXEL;
+        let limit = limit.max(ALWAYS);
         if bytes <= limit {
             return Ok(());
         }

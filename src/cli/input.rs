@@ -24,7 +24,7 @@ pub(super) struct Input {
     /// Files below this folder may be read too, besides those beside FILE; may be given several times
     #[arg(long, value_name = "FOLDER")]
     allow: Vec<PathBuf>,
-    /// Most memory for geometry and for decoded textures, each: 512M, 8G
+    /// Most memory for geometry, for decoded textures and for the image, each: 512M, 8G; images may always take 1G
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes, default_value = "8G")]
     pub memory_limit: u64,
     #[command(flatten)]

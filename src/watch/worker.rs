@@ -151,8 +151,8 @@ impl Work {
         let mut leg = Leg::begin(world, &plan.settings, None);
         let mut rules = plan.rules;
         let prepared = plan.integrator.prepare(cx);
-        // What was prepared in part is worth nothing.
-        let orders = if cx.cancelled() { None } else { Some(orders) };
+        // What was prepared in part is worth nothing: no more orders can be given, from before others hear of the rest.
+        let orders = (!cx.cancelled()).then_some(orders);
         let mut pace = Pace::new();
         loop {
             let each_round = |film: &Film, status: &Status, _: &dyn Rounds| {
