@@ -132,6 +132,8 @@ class Bench:
     def copied(self, act: Callable[[], object]) -> str:
         """What is in the clipboard after doing something."""
         self.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+        # What an earlier copy said may still stand there.
+        self.page.evaluate("() => (document.getElementById('said').innerText = '')")
         act()
         self.page.wait_for_function("() => document.getElementById('said').innerText === 'Copied.'")
         return str(self.page.evaluate("navigator.clipboard.readText()"))

@@ -182,7 +182,8 @@ def test_noise_that_hides_everything_is_a_warning(project: pytest.Pytester) -> N
     noisy.variances = {side: 1e6 * variance for side, variance in noisy.variances.items()}
     noisy.write(project.path / "tests/images/door/scene.exr")
     result = run(project)
-    result.assert_outcomes(passed=1, warnings=1)
+    # pytest itself may warn too.
+    result.assert_outcomes(passed=1)
     result.stdout.fnmatch_lines(["*so much noise is declared*"])
 
 
