@@ -19,7 +19,7 @@ function turned(v, axis, angle) {
 
 export class Camera {
   #place = null;
-  #touched = 0;
+  #touched = -Infinity;
   #timer = null;
 
   constructor(send) {

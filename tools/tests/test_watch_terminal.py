@@ -13,7 +13,7 @@ from watching import studio
 
 pty = pytest.importorskip("pty")
 # How long anything may take on a machine that is busy.
-PATIENCE = 300
+PATIENCE = 120
 
 
 class Terminal:

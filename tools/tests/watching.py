@@ -59,9 +59,10 @@ def material(color: str) -> str:
 
 def studio(folder: Path) -> Path:
     """Writes a scene; returns its file."""
-    (folder / "box.obj").write_text(BOX)
-    (folder / "box.mtl").write_text(material("0.6 0.6 0.6"))
-    (folder / "scene.toml").write_text(SCENE)
+    for name, text in {"box.obj": BOX, "box.mtl": material("0.6 0.6 0.6"), "scene.toml": SCENE}.items():
+        (folder / name).write_text(text)
+        # What is written just before the program reads it may have changed meanwhile, and is rendered twice.
+        os.utime(folder / name, (1e9, 1e9))
     return folder / "scene.toml"
 
 
