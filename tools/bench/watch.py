@@ -19,8 +19,10 @@ import statistics
 import struct
 import subprocess
 import tempfile
+import threading
 import time
 import zlib
+from collections import deque
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -215,6 +217,8 @@ def main():
         try:
             said = (json.loads(line) for line in process.stderr)
             page = Page(next(it["page"] for it in said if "page" in it))
+            # Who is not listened to waits when the pipe is full.
+            threading.Thread(target=deque, args=[process.stderr, 0], daemon=True).start()
             page.image()
             print(f"{len(triangles):,} triangles, {options.threads} threads, {options.saves} saves each")
             print("edit       median     95 %")
