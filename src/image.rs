@@ -83,10 +83,11 @@ pub struct Destination {
 }
 
 impl Destination {
-    /// Checks that no image takes the place of the other, or of a file that the scene was read from.
+    /// Checks that no image takes the place of the other, or of a file that the scene was read from, and that they have
+    /// folders to go to: who waited for an image must not lose it for a typing error.
     ///
     /// # Errors
-    /// One does; of the cause [`Cause::Usage`].
+    /// One does, of the cause [`Cause::Usage`], or has none, of the cause [`Cause::System`].
     pub fn check(&self, read: &[PathBuf]) -> Result<(), Diagnostic> {
         let taken = |what: &str, path: &Path| {
             let message = format!("the image would take the place of {what}");
@@ -96,6 +97,11 @@ impl Destination {
             return taken("its own preview", &self.exr);
         }
         for path in [&self.exr, &self.png] {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            if folder.is_some_and(|folder| !folder.is_dir()) {
+                let error = Diagnostic::error("cannot write: there is no such folder").because(Cause::System);
+                return Err(error.in_file(path).hint("make it first"));
+            }
             // What is not there can take no place.
             let Ok(real) = path.canonicalize() else { continue };
             if read.iter().any(|file| file.canonicalize().is_ok_and(|file| file == real)) {

@@ -54,8 +54,7 @@ pub fn fraction(status: &Status, rules: &StopRules) -> f64 {
     let by_time =
         rules.time.map_or(0.0, |t| status.elapsed.as_secs_f64() / t.as_secs_f64().max(f64::MIN_POSITIVE));
     // Noise falls with the square root of the work.
-    let by_noise =
-        rules.noise.zip(status.noise).map_or(0.0, |(limit, n)| (limit / n.typical.max(limit)).powi(2));
+    let by_noise = rules.noise.zip(status.noise).map_or(0.0, |(limit, n)| (limit / n.counted()).powi(2));
     by_rounds.max(by_time).max(by_noise).clamp(0.0, 1.0)
 }
 

@@ -157,7 +157,9 @@ fn progress(state: &State) -> String {
         };
         return format!("{phase} {width}x{height}, no round finished yet{glance}");
     }
-    let noise = state.noise.map_or(String::new(), |noise| format!(", noise {:.1} %", noise * 100.0));
+    let noise = state.noise.zip(state.worst_tile).map_or(String::new(), |(noise, worst)| {
+        format!(", noise {:.1} % (worst tile {:.0} %)", noise * 100.0, worst * 100.0)
+    });
     let time =
         Duration::try_from_secs_f64(state.seconds).map_or(String::new(), |t| format!(", {}", duration(t)));
     let left = state.seconds_left.and_then(|left| Duration::try_from_secs_f64(left).ok());

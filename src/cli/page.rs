@@ -5,6 +5,7 @@ use std::{
     net::{IpAddr, Ipv4Addr, SocketAddr},
     path::{Path, PathBuf},
     process::{Command, Stdio},
+    time::Duration,
 };
 
 use ajar_live::{
@@ -20,6 +21,8 @@ use crate::{viewer, watch::Watch};
 const PORT: u16 = 7347;
 /// Most pages at once.
 const PAGES: usize = 16;
+/// How long a connection may say nothing that makes it one of a page.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct Door {
@@ -51,7 +54,12 @@ pub(super) fn open(door: &Door, scene: &Path, watch: &Watch<'_>, log: Format) ->
         secret(memory.as_deref()).map_err(|e| refused("make a secret for the link of the page", &e))?;
     let (stage, program) = watch.for_pages();
     let start = |port| {
-        let options = Options { address: SocketAddr::new(ip, port), token: token.clone(), pages: PAGES };
+        let options = Options {
+            address: SocketAddr::new(ip, port),
+            token: token.clone(),
+            pages: PAGES,
+            patience: PATIENCE,
+        };
         Server::start(options, viewer::ASSETS, &stage, program.clone())
     };
     let server = match door.port {

@@ -154,5 +154,8 @@ mod tests {
         // Eight of 64 rounds; 60 of 100 seconds; half the noise takes four times the work.
         assert_eq!([done(1.0, 1.0), done(60.0, 1.0), done(1.0, 0.04)], [0.125, 0.6, 0.25]);
         assert_eq!(done(1.0, 0.01), 1.0);
+        // A tile with twice the noise that it may have holds everything up.
+        let noise = Some(Noise { typical: 0.01, worst_tile: 0.12 });
+        assert_eq!(fraction(&status(1.0, noise), &rules), 0.25);
     }
 }

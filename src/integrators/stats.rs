@@ -5,6 +5,7 @@
 //! mean, so that a render which stops at a noise limit has kept it.
 
 use ajar_render::{film::Film, math::scalar};
+use rayon::prelude::*;
 
 use crate::Window;
 
@@ -24,6 +25,13 @@ pub struct Noise {
     pub worst_tile: f64,
 }
 
+impl Noise {
+    /// The one number that limits are held against: the typical pixel's, or a third of the worst tile's where that is more.
+    pub fn counted(self) -> f64 {
+        self.typical.max(self.worst_tile / 3.0)
+    }
+}
+
 /// Estimates the noise of a film of `window`; `None` before [`MIN_ROUNDS`] or while the film is black.
 ///
 /// Pixels that are the same in all rounds, an even background, do not count: an image is not less noisy for having many
@@ -34,8 +42,9 @@ pub fn noise(film: &Film, window: Window) -> Option<Noise> {
         return None;
     }
     let (width, height) = (window.width() as usize, window.height() as usize);
-    let means: Vec<f64> = (0..film.pixels()).map(|p| scalar(film.mean(p))).collect();
-    let variances: Vec<f64> = (0..film.pixels()).map(|p| scalar(film.variance_of_mean(p))).collect();
+    let means: Vec<f64> = (0..film.pixels()).into_par_iter().map(|p| scalar(film.mean(p))).collect();
+    let variance = |p| scalar(film.variance_of_mean(p));
+    let variances: Vec<f64> = (0..film.pixels()).into_par_iter().map(variance).collect();
     let image_mean = means.iter().sum::<f64>() / means.len() as f64;
     if image_mean <= 0.0 {
         return None;
@@ -49,7 +58,7 @@ pub fn noise(film: &Film, window: Window) -> Option<Noise> {
     let relative = variances.iter().zip(&squares).map(|(v, s)| v / (s + floor));
     let relative: Vec<Option<f64>> = relative.zip(has_noise).map(|(r, noisy)| noisy.then_some(r)).collect();
     let enough = |tile: &Vec<Option<f64>>| tile.iter().flatten().count() * SPARSE >= tile.len();
-    let worst = tiles(&relative, width).into_iter().filter(enough).map(median).fold(0.0, f64::max);
+    let worst = tiles(&relative, width).into_par_iter().filter(enough).map(median).reduce(|| 0.0, f64::max);
     let typical = median(relative);
     Some(Noise { typical: typical.sqrt(), worst_tile: worst.max(typical).sqrt() })
 }
@@ -58,6 +67,7 @@ pub fn noise(film: &Film, window: Window) -> Option<Noise> {
 fn smooth(values: &[f64], width: usize, height: usize) -> Vec<f64> {
     let span = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
     (0..values.len())
+        .into_par_iter()
         .map(|i| {
             let (columns, rows) = (span(i % width, width), span(i / width, height));
             let count = columns.len() * rows.len();

@@ -11,7 +11,7 @@ pub struct StopRules {
     pub rounds: Option<u64>,
     /// Time since the first round began.
     pub time: Option<Duration>,
-    /// Noise of the typical pixel; the worst tile may have three times as much.
+    /// Noise as [`Noise::counted`].
     pub noise: Option<f64>,
 }
 
@@ -35,8 +35,8 @@ impl StopRules {
         if rounds > 0 && self.time.is_some_and(|limit| elapsed >= limit) {
             return Some(Reason::Time);
         }
-        let quiet = |limit: f64, noise: Noise| noise.typical <= limit && noise.worst_tile <= 3.0 * limit;
-        let stop = is_noise_check(rounds) && self.noise.zip(noise).is_some_and(|(l, n)| quiet(l, n));
+        let stop = is_noise_check(rounds)
+            && self.noise.zip(noise).is_some_and(|(limit, noise)| noise.counted() <= limit);
         stop.then_some(Reason::Noise)
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use half::f16;
+use rayon::prelude::*;
 
 /// Side of a tile, pixels.
 pub const TILE: usize = 64;
@@ -30,7 +31,11 @@ impl Frame {
                 _ => bytes.into(),
             }
         };
-        Self { width, height, tiles: (0..columns * height.div_ceil(TILE)).map(tile).collect() }
+        Self {
+            width,
+            height,
+            tiles: (0..columns * height.div_ceil(TILE)).into_par_iter().map(tile).collect(),
+        }
     }
 
     /// Columns.

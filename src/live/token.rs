@@ -17,12 +17,14 @@ pub fn new() -> io::Result<String> {
 }
 
 /// The one that is kept in a file, so that pages find the program again after it was restarted; only this user may read
-/// the file. A new one is written there where there is none.
+/// the file. A new one is written there where there is none, or one that others could read.
 ///
 /// # Errors
 /// The file cannot be written, or the system has no randomness.
 pub fn kept(path: &Path) -> io::Result<String> {
-    if let Some(token) = fs::read_to_string(path).ok().filter(|token| is_token(token)) {
+    if is_private(path)
+        && let Some(token) = fs::read_to_string(path).ok().filter(|token| is_token(token))
+    {
         return Ok(token);
     }
     let token = new()?;
@@ -37,6 +39,15 @@ pub fn kept(path: &Path) -> io::Result<String> {
     std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
     options.open(path)?.write_all(token.as_bytes())?;
     Ok(token)
+}
+
+/// Whether nobody else may read the file.
+fn is_private(path: &Path) -> bool {
+    #[cfg(unix)]
+    return fs::metadata(path)
+        .is_ok_and(|file| std::os::unix::fs::PermissionsExt::mode(&file.permissions()) & 0o077 == 0);
+    #[cfg(not(unix))]
+    return path.is_file();
 }
 
 fn is_token(text: &str) -> bool {

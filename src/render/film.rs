@@ -14,6 +14,8 @@ pub use state::FilmState;
 
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 
+use rayon::prelude::*;
+
 use crate::math::Rgb;
 use blocks::Blocks;
 
@@ -23,6 +25,8 @@ const DEPOSIT_BITS: i32 = 32;
 const SUM_BITS: i32 = 56;
 /// Largest value of one round's pixel, in units: its square and thousands of rounds of it fit an `i128`.
 const LIMIT: f64 = (1u64 << 29) as f64;
+/// Fewest values that are worth a thread.
+const GRAIN: usize = 1 << 12;
 
 /// What one round deposits.
 #[derive(Debug)]
@@ -102,11 +106,12 @@ impl Film {
         let one = 2f64.powi(SUM_BITS);
         let scale = scale * 2f64.powi(-DEPOSIT_BITS);
         let value = |deposits: &AtomicI64| (deposits.load(Ordering::Relaxed) as f64 * scale).min(LIMIT);
-        let values: Vec<f64> = round.values.iter().map(value).collect();
-        for ((sum, square), v) in self.sum.iter_mut().zip(&mut self.squares).zip(&values) {
+        let values: Vec<f64> = round.values.par_iter().map(value).collect();
+        let sums = self.sum.par_iter_mut().zip(&mut self.squares).with_min_len(GRAIN);
+        sums.zip(&values).for_each(|((sum, square), v)| {
             *sum += (v * one).round() as i128;
             *square += (v * v * one).round() as i128;
-        }
+        });
         if let Some(blocks) = &mut self.blocks {
             blocks.add(&values, one);
         }
@@ -154,7 +159,7 @@ impl Film {
     pub fn block_variances(&self, level: usize) -> Option<Vec<Rgb>> {
         let blocks = self.blocks.as_ref().filter(|_| self.rounds >= 2)?;
         let (n, one, unit) = (self.rounds as f64, 2f64.powi(SUM_BITS), self.unit());
-        let means: Vec<f64> = self.sum.iter().map(|sum| *sum as f64 / (one * n)).collect();
+        let means: Vec<f64> = self.sum.par_iter().map(|sum| *sum as f64 / (one * n)).collect();
         let variances = blocks.variances(level, &means, n, one);
         Some(variances.into_iter().map(|v| v * unit * unit).collect())
     }

@@ -1,7 +1,5 @@
 // Moving the camera with the pointer: about its target, sideways, and nearer.
 
-import { say } from "./status.js";
-
 const PAUSE = 60;
 
 const add = (a, b, s = 1) => a.map((x, i) => x + s * b[i]);
@@ -19,6 +17,7 @@ function turned(v, axis, angle) {
 
 export class Camera {
   #place = null;
+  #said = null;
   #touched = -Infinity;
   #timer = null;
 
@@ -28,11 +27,24 @@ export class Camera {
 
   // What the program says; while it is being moved, what the pointer says counts.
   learn({ name, position, target, up, yfov, half_height }) {
-    if (performance.now() - this.#touched > 1500) this.#place = { name, position, target, up, yfov, half_height };
+    this.#said = { name, position, target, up, yfov, half_height };
+    this.#settle();
+  }
+
+  // What the program says next counts, for somebody asked for another camera.
+  follow() {
+    clearTimeout(this.#timer);
+    this.#timer = null;
+    this.#touched = -Infinity;
+  }
+
+  #settle() {
+    if (performance.now() - this.#touched > 1500) this.#place = this.#said;
   }
 
   // As scene files say it.
   toml() {
+    this.#settle();
     if (!this.#place) return "";
     const { name, position, target, up, yfov, half_height } = this.#place;
     const keys = { name, position, target, up, yfov, half_height };
@@ -56,7 +68,6 @@ export class Camera {
 
   // `dx` and `dy` in parts of the image's height.
   pan(dx, dy) {
-    if (this.#isParallel && !this.#place.half_height) return say("This camera is orthographic: what moves it sideways is its position in the file.");
     this.#move(({ position, target, up, yfov, half_height }) => {
       const away = add(position, target, -1);
       const reach = 2 * (half_height ?? Math.hypot(...away) * Math.tan((yfov * Math.PI) / 360));
@@ -67,23 +78,21 @@ export class Camera {
   }
 
   dolly(factor) {
-    if (this.#isParallel) return say("This camera is orthographic: what makes things larger is its half_height in the file.");
-    this.#move(({ position, target, up }) => ({ position: add(target, add(position, target, -1), factor), target, up }));
-  }
-
-  get #isParallel() {
-    return this.#place && !this.#place.yfov;
+    // To an orthographic camera nothing is larger from near by: it sees less.
+    this.#move(({ position, target, half_height }) =>
+      half_height ? { half_height: half_height * factor } : { position: add(target, add(position, target, -1), factor) });
   }
 
   #move(how) {
+    this.#settle();
     if (!this.#place) return;
     this.#place = { ...this.#place, ...how(this.#place) };
     this.#touched = performance.now();
     // The last place always gets there; those between need not.
     this.#timer ??= setTimeout(() => {
       this.#timer = null;
-      const { position, target, up } = this.#place;
-      this.send({ do: "camera", position, target, up });
+      const { position, target, up, half_height } = this.#place;
+      this.send({ do: "camera", position, target, up, half_height });
     }, PAUSE);
   }
 }

@@ -1,5 +1,7 @@
 // What is shown: the image, or a view of what the camera sees first, which the program makes when it is asked.
 
+import { say } from "./status.js";
+
 const $ = (id) => document.getElementById(id);
 
 // The error changes with every round; the others are of one image.
@@ -55,8 +57,9 @@ export class Layers {
       this.#show(true);
     }
     this.#asks = false;
-    // What was said meanwhile.
+    // What was said meanwhile; a view that could not be made is asked for again when there is more to see.
     if (answer?.ok) this.follow(this.#state);
+    else if (answer) say("The view could not be made.");
   }
 
   #show(isShown) {

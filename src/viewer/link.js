@@ -5,6 +5,7 @@ const FIRST_PAUSE = 250, LONGEST_PAUSE = 4000;
 export class Link {
   #socket = null;
   #pause = FIRST_PAUSE;
+  #timer = null;
 
   // `hear` gets each document, `tiles` each part of a frame, `state` how it stands: "open", "closed", or "full" where the
   // program is there but has no place for another page.
@@ -27,6 +28,7 @@ export class Link {
   }
 
   #connect() {
+    clearTimeout(this.#timer);
     const address = new URL("socket", location.href);
     address.protocol = "ws:";
     const socket = new WebSocket(address);
@@ -43,7 +45,8 @@ export class Link {
     };
     socket.onclose = async () => {
       this.state(!isOpened && (await isThere()) ? "full" : "closed");
-      setTimeout(() => this.#connect(), this.#pause);
+      if (socket !== this.#socket) return;
+      this.#timer = setTimeout(() => this.#connect(), this.#pause);
       this.#pause = Math.min(this.#pause * 2, LONGEST_PAUSE);
     };
     this.#socket = socket;

@@ -9,7 +9,7 @@ import { Link } from "./link.js";
 import { Panel } from "./panel.js";
 import { addPointer } from "./pointer.js";
 import { Screen } from "./screen.js";
-import { cannot, showLink, showNotes, showProbe, showState } from "./status.js";
+import { cannot, say, showLink, showNotes, showProbe, showState } from "./status.js";
 import { showVariants } from "./variants.js";
 
 const $ = (id) => document.getElementById(id);
@@ -18,7 +18,10 @@ const screen = made();
 const layers = new Layers(screen);
 const compare = new Compare(screen, layers);
 const link = new Link({ hear, tiles: (part) => screen.tiles(part), state: learnLink });
-const send = (request) => link.send(request);
+const send = (request) => {
+  if (["revert", "through"].includes(request.do)) camera.follow();
+  link.send(request);
+};
 const camera = new Camera(send);
 const panel = new Panel(send);
 let state = { phase: "loading", size: [0, 0], snapshots: [] };
@@ -106,6 +109,7 @@ function setCurve(curve) {
 
 function save() {
   screen.png((blob) => {
+    if (!blob) return say("The image is too large for this browser to save.");
     const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: "ajar.png" });
     link.click();
     URL.revokeObjectURL(link.href);
@@ -139,6 +143,7 @@ $("run").onclick = actions.run;
 $("restart").onclick = actions.restart;
 $("png").onclick = save;
 $("help-button").onclick = actions.help;
+$("panel-button").onclick = actions.panel;
 for (const id of ["fit", "actual", "clay"]) $(id).onclick = actions[id];
 $("camera-tool").onclick = () => pointer.choose("camera");
 $("region-tool").onclick = () => (state.phase !== "loading" && screen.view.region ? actions.whole() : pointer.choose("region"));

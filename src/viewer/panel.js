@@ -2,11 +2,15 @@
 
 const $ = (id) => document.getElementById(id);
 
+const PAUSE = 500;
+
 // Scene files know these keys; beyond the range of a slider, numbers can be typed.
 const NUMBERS = {
   roughness: [0, 1], metallic: [0, 1], specular: [0, 1], ior: [1, 3], transmission: [0, 1],
   coat: [0, 1], coat_roughness: [0, 1], opacity: [0, 1],
 };
+// Degrees; other numbers of lights are lengths in metres.
+const ANGLES = { inner: [0, 90], outer: [0, 90], angle: [0, 30] };
 const COLORS = { base_color: "srgb", emission: "light" };
 
 const encode = (x) => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
@@ -17,22 +21,37 @@ const short = (x) => Number(Number(x).toPrecision(5));
 
 export class Panel {
   #scene = null;
+  #touched = -Infinity;
+  #later = null;
 
   constructor(send) {
     this.send = send;
     for (const kind of ["material", "light"]) $(kind + "s").onchange = () => this.#show(kind);
+    $("panel").addEventListener("input", () => (this.#touched = performance.now()));
     $("cameras").onchange = (event) => send({ do: "through", camera: event.target.value });
   }
 
   learn(scene) {
-    // A control that is being used must not change under the pointer.
-    const busy = $("panel").contains(document.activeElement) && ["range", "number", "color"].includes(document.activeElement.type);
     this.#scene = scene;
     fill($("materials"), scene.materials.map(({ name }) => name));
     fill($("lights"), scene.lights.map(({ name }) => name));
     fill($("cameras"), scene.cameras);
     $("cameras").value = scene.camera.name;
-    if (!busy) ["material", "light"].forEach((kind) => this.#show(kind));
+    this.#refresh();
+  }
+
+  // A control that is being used must not change under the pointer: then later.
+  #refresh() {
+    clearTimeout(this.#later);
+    if (this.#isUsed()) this.#later = setTimeout(() => this.#refresh(), PAUSE);
+    else ["material", "light"].forEach((kind) => this.#show(kind));
+  }
+
+  #isUsed() {
+    const used = document.activeElement;
+    if (!document.hasFocus() || !$("panel").contains(used)) return false;
+    if (["number", "color"].includes(used.type)) return true;
+    return used.type === "range" && (used.matches(":active") || performance.now() - this.#touched < 2 * PAUSE);
   }
 
   // Shows the material of this name.
@@ -55,11 +74,13 @@ export class Panel {
     return [...colors.slice(0, 1), ...numbers, ...colors.slice(1)];
   }
 
-  #light({ name, table, key, strength, scale, color }) {
+  #light({ name, table, key, strength, scale, color, shape }) {
     const set = (key) => (value) => this.send({ do: "set", table, name, key, value });
     const ofAsset = table === "node";
     const scaled = ofAsset ? ["light_scale", { value: scale ?? 1 }, [0, 4]] : [key, { value: strength }, [0, Math.max(2 * strength, 1)]];
-    return [numberRow(...scaled, set(scaled[0])), colorRow(ofAsset ? "light_color" : "color", { value: color }, set(ofAsset ? "light_color" : "color"))];
+    // Those of an asset are its own.
+    const numbers = Object.entries(ofAsset ? {} : shape).map(([key, value]) => numberRow(key, { value }, ANGLES[key] ?? [value / 50, 2 * value], set(key)));
+    return [numberRow(...scaled, set(scaled[0])), ...numbers, colorRow(ofAsset ? "light_color" : "color", { value: color }, set(ofAsset ? "light_color" : "color"))];
   }
 }
 
@@ -111,7 +132,11 @@ function numberRow(key, { value, textured }, [min, max], set) {
 function colorRow(key, { value, textured }, set, isLight = false) {
   const label = row(key, textured);
   const peak = isLight ? Math.max(...value, 0) || 1 : Math.max(1, ...value);
-  const send = () => set(rgb(picker.value).map((x) => short(x * (isLight ? Number(scale.value) : 1))));
+  const send = () => {
+    // A light that was dark would stay so in any colour.
+    if (isLight && Number(scale.value) === 0) scale.value = 1;
+    set(rgb(picker.value).map((x) => short(x * (isLight ? Number(scale.value) : 1))));
+  };
   const picker = input("color", { value: hex(value.map((x) => x / peak)) }, send);
   const scale = input("number", { step: "any", min: 0, value: short(Math.max(...value, 0)) }, send);
   picker.dataset.key = key;

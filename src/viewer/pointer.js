@@ -78,6 +78,8 @@ export function addPointer({ screen, camera, send }) {
   const move = (event) => {
     if (fingers.size === 2 && fingers.has(event.pointerId)) return pinch(event);
     const [x, y] = (spot = at(event));
+    // It does not cover what is looked at.
+    $("probe").classList.toggle("aside", x < canvas.clientWidth / 2 && y > canvas.clientHeight / 2);
     if (!drag) return look();
     const [dx, dy] = [x - drag.last[0], y - drag.last[1]];
     drag.moved ||= Math.hypot(x - drag.start[0], y - drag.start[1]) >= CLICK;
@@ -113,10 +115,15 @@ export function addPointer({ screen, camera, send }) {
   canvas.addEventListener("pointercancel", (event) => {
     fingers.delete(event.pointerId);
     drag = null;
+    $("marquee").hidden = true;
   });
   canvas.addEventListener("pointerleave", ({ pointerType }) => {
     // A finger that is lifted leaves too, and what it touched is still of interest.
     if (pointerType === "touch") return;
+    spot = null;
+    $("probe").hidden = true;
+  });
+  $("probe").addEventListener("pointerdown", () => {
     spot = null;
     $("probe").hidden = true;
   });

@@ -100,9 +100,12 @@ impl Watch<'_> {
         self.changed.clear();
         self.sound_draft = self.draft.clone();
         self.state.errors.clear();
+        self.is_taken_back = false;
         self.state.image += 1;
         self.state.edits = self.draft.text();
         self.state.is_clay = self.draft.is_clay();
+        // The image may be smaller than the one that it was drawn on.
+        self.region = self.region.and_then(|region| edits::cut(region, opened.plan.size));
         if let Some(region) = self.region {
             opened.plan.settings.window = region;
         }
@@ -121,9 +124,11 @@ impl Watch<'_> {
         // Notes that came with them are no reason; where warnings are, there is nothing worse.
         let worst = errors.iter().map(|error| error.severity).max();
         self.state.errors = errors.into_iter().filter(|error| Some(error.severity) == worst).collect();
-        if self.draft != self.sound_draft {
-            // A page that asks for what cannot be has to take it back.
+        self.is_taken_back = self.draft != self.sound_draft;
+        if self.is_taken_back {
+            // What cannot be is taken back, also on the pages that show it.
             self.draft = self.sound_draft.clone();
+            self.about = self.about.to_string().into();
             self.is_stale = !self.changed.is_empty();
         }
         self.state.phase = match self.opened {
@@ -142,7 +147,9 @@ impl Watch<'_> {
         if !is_of_draft {
             return error;
         }
-        let hint = ["Drop takes them back".to_owned()].into_iter().chain(error.hint).rev();
+        let is_new = self.draft != self.sound_draft;
+        let hint = if is_new { "the last one is taken back" } else { "Drop takes them back" };
+        let hint = [hint.to_owned()].into_iter().chain(error.hint).rev();
         let hint = hint.collect::<Vec<_>>().join("; ");
         Diagnostic { file: Some(Draft::NAME.into()), place: None, hint: Some(hint), ..error }
     }

@@ -40,9 +40,9 @@ fn imports(varied: &[VariedImport]) -> Vec<Value> {
 }
 
 fn camera((camera, place): &(Camera, DAffine3), pivot: DVec3) -> Value {
-    let yfov = match camera.projection {
-        Projection::Perspective { yfov, .. } => Some(yfov.to_degrees()),
-        Projection::Orthographic { .. } => None,
+    let (yfov, half_height) = match camera.projection {
+        Projection::Perspective { yfov, .. } => (Some(yfov.to_degrees()), None),
+        Projection::Orthographic { half_height } => (None, Some(half_height)),
     };
     json!({
         "name": camera.name,
@@ -50,6 +50,7 @@ fn camera((camera, place): &(Camera, DAffine3), pivot: DVec3) -> Value {
         "target": pivot.to_array(),
         "up": place.matrix3.y_axis.normalize_or(DVec3::Y).to_array(),
         "yfov": yfov,
+        "half_height": half_height,
     })
 }
 
@@ -95,7 +96,7 @@ pub(super) fn lights(scene: &Scene, settings: &[Setting]) -> Vec<Value> {
             let scale = light_scale(name, settings);
             json!({
                 "name": name, "table": table, "key": key, "strength": strength, "scale": scale,
-                "color": light.color.to_array(),
+                "color": light.color.to_array(), "shape": shape(&light.kind),
             })
         })
     });
@@ -134,5 +135,19 @@ fn strength(kind: &LightKind) -> (&'static str, f32) {
         | LightKind::Sphere { radiance, .. }
         | LightKind::Cylinder { radiance, .. }
         | LightKind::Environment { radiance, .. } => ("radiance", radiance),
+    }
+}
+
+/// The other numbers of a light as scene files say them, angles in degrees, lengths in metres.
+fn shape(kind: &LightKind) -> Value {
+    match *kind {
+        LightKind::Point { .. } | LightKind::Environment { .. } => json!({}),
+        LightKind::Spot { inner, outer, .. } => {
+            json!({ "inner": inner.to_degrees(), "outer": outer.to_degrees() })
+        }
+        LightKind::Directional { angle, .. } => json!({ "angle": angle.to_degrees() }),
+        LightKind::Rect { width, height, .. } => json!({ "width": width, "height": height }),
+        LightKind::Disk { radius, .. } | LightKind::Sphere { radius, .. } => json!({ "radius": radius }),
+        LightKind::Cylinder { radius, length, .. } => json!({ "radius": radius, "length": length }),
     }
 }

@@ -24,6 +24,11 @@ const VIEW: &str = "view";
 impl Watch<'_> {
     pub(super) fn answer(&mut self, request: Request, reply: &Reply, view: &mut dyn Told) {
         self.is_news = true;
+        if self.is_taken_back && !matches!(request, Request::Probe { .. }) {
+            // Who asks for something else has seen why.
+            self.is_taken_back = false;
+            self.state.errors.clear();
+        }
         match request {
             Request::Stop {} if self.worker.is_some() => {
                 self.rest();
@@ -65,9 +70,14 @@ impl Watch<'_> {
     fn choose_region(&mut self, pixels: Option<[u32; 4]>) {
         let Some(opened) = &mut self.opened else { return };
         let [width, height] = opened.plan.size;
-        let window = pixels.map(|[x0, y0, x1, y1]| Window { x0, y0, x1: x1.min(width), y1: y1.min(height) });
-        self.region = window.filter(|it| it.x0 < it.x1 && it.y0 < it.y1);
-        opened.plan.settings.window = self.region.unwrap_or(Window { x0: 0, y0: 0, x1: width, y1: height });
+        let region = pixels.map(|[x0, y0, x1, y1]| Window { x0, y0, x1, y1 });
+        let inside = region.and_then(|region| cut(region, opened.plan.size));
+        if region.is_some() && inside.is_none() {
+            // Drawn beside the image.
+            return;
+        }
+        self.region = inside;
+        opened.plan.settings.window = inside.unwrap_or(Window { x0: 0, y0: 0, x1: width, y1: height });
         self.begin_again();
     }
 
@@ -99,6 +109,12 @@ impl Watch<'_> {
             Err(error) => self.state.errors = vec![error],
         }
     }
+}
+
+/// What of a region lies in an image of this size.
+pub(super) fn cut(region: Window, [width, height]: [u32; 2]) -> Option<Window> {
+    let inside = Window { x1: region.x1.min(width), y1: region.y1.min(height), ..region };
+    (inside.x0 < inside.x1 && inside.y0 < inside.y1).then_some(inside)
 }
 
 /// Names of the object and of the material at a pixel, and where they are, if there is something.
@@ -139,6 +155,8 @@ fn look_from(draft: &mut Draft, opened: &Opened, view: View) {
     let place: BTreeMap<_, _> =
         [("position", view.position), ("target", view.target), ("up", view.up)].into();
     let place = place.into_iter().map(|(key, vector)| (key.to_owned(), numbers(&vector)));
+    let half_height = view.half_height.map(|half| ("half_height".to_owned(), shortest(half as f32).into()));
+    let place = place.chain(half_height);
     if of_file {
         draft.table(Kind::Camera, name.as_str()).extend(place);
         return;

@@ -45,6 +45,9 @@ impl Work {
             }
         }
         let Rendered { film, status, .. } = self.eye_paths(&job.world, window, cancel)?;
+        if cancel.load(Ordering::Relaxed) {
+            return None;
+        }
         self.show_glance(&film, &status);
         Some((film, status.elapsed))
     }

@@ -199,6 +199,8 @@ pub struct Watch<'a> {
     draft: Draft,
     /// The changes that the scene was read with.
     sound_draft: Draft,
+    /// Whether the last change that pages made could not be, and the errors that are shown say why.
+    is_taken_back: bool,
     /// Where changes were saved.
     layer: Layer,
     region: Option<Window>,
@@ -248,6 +250,7 @@ impl<'a> Watch<'a> {
             gesture: Gesture::default(),
             draft: Draft::default(),
             sound_draft: Draft::default(),
+            is_taken_back: false,
             layer: Layer::default(),
             region: None,
             is_endless: false,

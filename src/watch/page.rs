@@ -54,6 +54,9 @@ pub(super) struct View {
     pub position: [f64; 3],
     pub target: [f64; 3],
     pub up: [f64; 3],
+    /// Of an orthographic camera: half of what it sees from top to bottom, metres.
+    #[serde(default)]
+    pub half_height: Option<f64>,
 }
 
 /// The state as pages are told.
@@ -77,7 +80,9 @@ impl Program for Pages {
     fn command(&self, text: String, reply: Reply) -> bool {
         let Ok(request) = serde_json::from_str(&text) else { return false };
         if self.waiting.fetch_add(1, Ordering::Relaxed) >= MOST_WAITING {
-            return false;
+            self.waiting.fetch_sub(1, Ordering::Relaxed);
+            // A pointer that moves while a large scene is read asks many times, and will again.
+            return matches!(request, Request::Probe { .. });
         }
         self.events.send(Event::Page(request, reply)).is_ok()
     }

@@ -45,7 +45,7 @@ impl Views {
         let aov = Aov::parse(name).ok()?;
         if aov == Aov::Variance {
             let ([width, height], errors) = self.screen.errors();
-            return Some(Arc::new(Frame::new(width, height, &errors_of(errors), None)));
+            return Some(Arc::new(at_once(|| Frame::new(width, height, &errors_of(errors), None))));
         }
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         let (image, world) = self.shown.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
@@ -54,8 +54,10 @@ impl Views {
         }
         let (width, height) = (world.camera.width, world.camera.height);
         let window = Window { x0: 0, y0: 0, x1: width, y1: height };
-        let hits = at_once(|| features_of(&world, window, SAMPLES));
-        let frame = Arc::new(Frame::new(width as usize, height as usize, &codes(aov, &hits), None));
+        let frame = Arc::new(at_once(|| {
+            let hits = features_of(&world, window, SAMPLES);
+            Frame::new(width as usize, height as usize, &codes(aov, &hits), None)
+        }));
         *last = Some((image, aov, Arc::clone(&frame)));
         Some(frame)
     }
@@ -141,9 +143,11 @@ mod tests {
         time::{Duration, Instant},
     };
 
+    use ajar_live::server::Stage;
     use rayon::prelude::*;
 
     use super::*;
+    use crate::watch::screen::Shot;
 
     fn hit(depth: f32, object: u32) -> Features {
         Features { depth, object, material: object, alpha: 1.0, normal: Vec3::Y, ..Features::default() }
@@ -151,6 +155,13 @@ mod tests {
 
     #[test]
     fn what_is_asked_for_comes_while_others_work() {
+        let (sender, _events) = std::sync::mpsc::channel();
+        let screen = Arc::new(Screen::new(Stage::default(), None, sender));
+        let size = [130, 70];
+        let window = Window { x0: 0, y0: 0, x1: size[0], y1: size[1] };
+        let values = vec![[1.0; 3]; 130 * 70];
+        screen.show(Shot { size, window, pixels: values.clone(), errors: Some(values) });
+        let views = Views::new(screen);
         // Every thread of the render is busy until told, or for as long as nobody should wait.
         let busy = Arc::new((AtomicBool::new(true), AtomicUsize::new(0)));
         for _ in 0..rayon::current_num_threads() {
@@ -164,8 +175,9 @@ mod tests {
             });
         }
         let sum: usize = at_once(|| (0..100usize).into_par_iter().sum());
+        let has_errors = views.get("variance").is_some();
         busy.0.store(false, Ordering::SeqCst);
-        assert_eq!((sum, busy.1.load(Ordering::SeqCst)), (4950, 0));
+        assert_eq!((sum, has_errors, busy.1.load(Ordering::SeqCst)), (4950, true, 0));
     }
 
     #[test]

@@ -12,6 +12,7 @@ use std::{
 
 use ajar_integrators::{Context, Rounds, stop::StopRules};
 use ajar_render::{World, film::Film};
+use rayon::prelude::*;
 
 use super::{
     Event,
@@ -153,16 +154,19 @@ impl Work {
         let prepared = plan.integrator.prepare(cx);
         // What was prepared in part is worth nothing: no more orders can be given, from before others hear of the rest.
         let orders = (!cx.cancelled()).then_some(orders);
-        let mut pace = Pace::new();
+        let (mut pace, mut shown) = (Pace::new(), 0);
         loop {
             let each_round = |film: &Film, status: &Status, _: &dyn Rounds| {
                 glances = None;
                 self.tell(News::Round(*status));
-                pace.keep(|| self.show(film));
+                pace.keep(|| {
+                    self.show(film);
+                    shown = status.rounds;
+                });
             };
             let rendered = session::advance(&*prepared, cx, &rules, Shard::WHOLE, leg, each_round);
             glances = None;
-            if rendered.film.rounds() > 0 {
+            if rendered.film.rounds() > shown {
                 self.show(&rendered.film);
             }
             // Who gets it may have ended.
@@ -184,13 +188,13 @@ impl Work {
             size: plan.size,
             window: plan.settings.window,
             pixels: pixels(film, exposure),
-            errors: Some((0..film.pixels()).map(errors).collect()),
+            errors: Some((0..film.pixels()).into_par_iter().map(errors).collect()),
         });
     }
 }
 
 pub(super) fn pixels(film: &Film, exposure: f64) -> Vec<[f32; 3]> {
-    (0..film.pixels()).map(|p| (film.mean(p) * exposure).as_vec3().to_array()).collect()
+    (0..film.pixels()).into_par_iter().map(|p| (film.mean(p) * exposure).as_vec3().to_array()).collect()
 }
 
 /// Sees to it that showing takes little of the time.

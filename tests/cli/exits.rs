@@ -91,6 +91,11 @@ fn an_output_that_cannot_be_written_is_1() {
         .run("render leaf.gltf --size 8x8 --spp 1 -o leaf.gltf/out.exr")
         .exits(1)
         .says(&["leaf.gltf", "cannot write"]);
+    // It is said before anything is rendered.
+    bench
+        .run("render leaf.gltf --dry-run -o away/out.exr")
+        .exits(1)
+        .says(&["away/out.exr", "no such folder"]);
 }
 
 #[test]

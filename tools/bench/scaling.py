@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 
 SCENES = Path(__file__).parents[2] / "scenes"
-ROUNDS = {"path": 64, "bdpt": 16, "mlt": 16}
+ROUNDS = {"path": 2, "bdpt": 1, "mlt": 8}
 
 
 def seconds(ajar, *arguments):

@@ -5,7 +5,8 @@
     python tools/bench/watch.py target/release/ajar
 
 writes a scene around an asset of a million triangles with a texture, opens the page's WebSocket as a browser does, and
-saves material, camera, texture and geometry again and again: `--saves` times each. The clock runs from the moment that
+saves material, camera, texture and geometry again and again: `--saves` times each. First it tells how long the first
+pixels take from the start of the program. The clock of a save runs from the moment that
 the file has its new name until the first part of a changed frame has arrived. It also changes a material from the
 page, into a render at work; there the clock runs until the old render has stopped, and until the first changed part.
 """
@@ -213,14 +214,16 @@ def main():
         }
         textures = [png(i) for i in range(options.saves + 1)]
         command = [options.ajar, "watch", folder / "scene.toml", "--port", "0", "--log-format", "json"]
+        began = time.perf_counter()
         process = subprocess.Popen([*command, "--threads", str(options.threads)], stderr=subprocess.PIPE, text=True)
         try:
             said = (json.loads(line) for line in process.stderr)
             page = Page(next(it["page"] for it in said if "page" in it))
             # Who is not listened to waits when the pipe is full.
             threading.Thread(target=deque, args=[process.stderr, 0], daemon=True).start()
-            page.image()
+            first = page.image()[1] - began
             print(f"{len(triangles):,} triangles, {options.threads} threads, {options.saves} saves each")
+            print(f"from the start to the first pixels {first:.2f} s")
             print("edit       median     95 %")
             for name, save in edits.items():
                 times = []

@@ -182,5 +182,6 @@ def benched(folder: Path) -> Iterator[Bench]:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         bench = Bench(folder, browser)
         yield bench
+        assert bench.problems == []
         browser.close()
         assert bench.watch.end() == 0

@@ -57,8 +57,13 @@ def test_everything_is_clay_until_it_is_not(bench: Bench) -> None:
 
 def test_what_cannot_be_is_taken_back(bench: Bench) -> None:
     edits = bench.page.inner_text("#edits")
-    bench.page.fill("#material input[type=number][data-key=roughness]", "7")
+    field = "#material input[type=number][data-key=roughness]"
+    shown = bench.page.input_value(field)
+    bench.page.fill(field, "7")
     bench.page.wait_for_selector("#banner:not([hidden])")
+    # Who leaves the field sees what is.
+    bench.page.locator(field).blur()
+    bench.page.wait_for_function("([field, shown]) => document.querySelector(field).value === shown", arg=[field, shown])
     assert "roughness" in bench.page.inner_text("#banner")
     assert bench.page.inner_text("#edits") == edits
     bench.changed(lambda: bench.page.fill("#material input[type=number][data-key=roughness]", "0.9"))
@@ -74,8 +79,12 @@ def test_a_light_is_changed(bench: Bench) -> None:
     bench.changed(lambda: bench.page.fill("#light input[type=color]", "#ff2020"))
     red = bench.mean(MIDDLE)
     assert red[0] / red[1] > 1.1 * darker[0] / darker[1]
+    # A wide sun casts soft shadows.
+    sharp = bench.seen()
+    bench.changed(lambda: bench.page.fill("#light input[type=number][data-key=angle]", "60"))
+    assert np.abs(bench.seen() - sharp).max() > 20
     table = tomllib.loads(bench.page.inner_text("#edits"))["light"][0]
-    assert (table["name"], table["illuminance"]) == ("sun", 2)
+    assert (table["name"], table["illuminance"], table["angle"]) == ("sun", 2, 60)
     assert tomllib.loads(bench.copied(lambda: bench.page.click("#copy")))["light"][0] == table
     bench.changed(lambda: bench.page.click("#revert"))
     assert bench.mean(MIDDLE) == before
@@ -139,6 +148,18 @@ def test_the_camera_is_moved_with_the_pointer(bench: Bench) -> None:
     assert np.array_equal(bench.seen(), before)
 
 
+def test_a_camera_that_was_dropped_is_forgotten(bench: Bench) -> None:
+    bench.page.focus("#canvas")
+    bench.page.keyboard.press("c")
+    places = []
+    for _ in range(2):
+        bench.changed(lambda: bench.drag((0.5, 0.5), (0.62, 0.53)))
+        places.append(camera_of(bench)["position"])
+        bench.changed(lambda: bench.page.click("#revert"))
+    assert places[1] == pytest.approx(places[0], abs=1e-3)
+    bench.page.keyboard.press("c")
+
+
 def test_the_camera_is_copied_as_it_is(bench: Bench) -> None:
     text = bench.copied(lambda: bench.page.click("#copy-camera"))
     camera = tomllib.loads(text)["camera"][0]
@@ -166,16 +187,28 @@ def test_pages_from_elsewhere_copy_too(bench: Bench) -> None:
     page.close()
 
 
-def test_an_orthographic_camera_says_what_it_cannot(bench: Bench) -> None:
+def test_an_orthographic_camera_sees_less_and_moves_sideways(bench: Bench) -> None:
     lens = "target = [0, 0, 0]\nhalf_height = 2"
     bench.changed(lambda: bench.scene.write_text(SCENE.replace("target = [0, 0, 0]", lens)))
     bench.page.focus("#canvas")
     bench.page.keyboard.press("c")
     bench.page.mouse.move(*bench.at(0.5, 0.5))
-    bench.page.mouse.wheel(0, -200)
-    bench.page.wait_for_function("() => document.getElementById('said').innerText.includes('half_height')")
-    assert bench.page.inner_text("#edits") == "None."
+    bench.changed(lambda: bench.page.mouse.wheel(0, -200))
+    nearer = camera_of(bench)
+    assert nearer["half_height"] == pytest.approx(2 * math.exp(-0.5), rel=0.01)
+    assert nearer["position"] == pytest.approx([3, 2, 4])
+
+    bench.page.keyboard.down("Shift")
+    bench.changed(lambda: bench.drag((0.5, 0.5), (0.5, 0.75)))
+    bench.page.keyboard.up("Shift")
+    moved = camera_of(bench)
+    assert moved["half_height"] == nearer["half_height"]
+    by = np.linalg.norm(np.subtract(moved["position"], nearer["position"]))
+    canvas = bench.page.evaluate("[canvas.clientWidth, canvas.clientHeight, Number(canvas.dataset.zoom)]")
+    shown = canvas[1] / (HEIGHT * canvas[2])
+    assert by == pytest.approx(0.25 * shown * 2 * nearer["half_height"], rel=0.02)
     bench.page.keyboard.press("c")
+    bench.changed(lambda: bench.page.click("#revert"))
     bench.changed(lambda: bench.scene.write_text(SCENE))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -205,3 +206,29 @@ def test_the_sheet_names_the_keys(bench: Bench) -> None:
     assert "wipe" in bench.page.inner_text("#keys")
     bench.page.click("#help button")
     assert bench.problems == []
+
+
+def test_memory_of_the_page_does_not_grow(bench: Bench) -> None:
+    inspector = bench.page.context.new_cdp_session(bench.page)
+
+    def held() -> float:
+        """Bytes that scripts and the page's elements hold, and what lies beside them."""
+        inspector.send("HeapProfiler.collectGarbage")
+        usage = inspector.send("Runtime.getHeapUsage")
+        return float(sum(usage[key] for key in ("usedSize", "embedderHeapUsedSize", "backingStorageSize")))
+
+    def edit(times: int) -> None:
+        for number in range(times):
+            color = f"0.7 {0.1 + 0.001 * number} 0.05"
+            bench.changed(lambda color=color: (bench.folder / "box.mtl").write_text(material(color)))  # type: ignore[misc]
+
+    # Many more than are run by default tell more (the list of images of before has at most 48).
+    edits = int(os.environ.get("AJAR_PAGE_EDITS", "12"))
+    edit(edits)
+    frames, before = bench.page.evaluate("Number(canvas.dataset.frames)"), held()
+    edit(edits)
+    after = held()
+    frames = bench.page.evaluate("Number(canvas.dataset.frames)") - frames
+    print(f"{edits} edits, {frames} frames: {before / 1e6:.2f} MB, then {after / 1e6:.2f} MB")
+    # One frame held for each edit would be 1.5 times this.
+    assert after - before < edits * WIDTH * HEIGHT * 6 / 1.5

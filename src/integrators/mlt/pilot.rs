@@ -105,6 +105,9 @@ fn seen_by_chains(chains: &PlainChains<'_>, before: Option<&[f64]>, mutations: u
     };
     let number = if before.is_some() { BRIGHTNESS_ROUND } else { ROUGH_ROUND };
     chains.render(&Run { length: LENGTH, relative_to: before, ..chains.run(number, mutations) }, record);
+    if space.cancelled() {
+        return vec![1.0; pixels];
+    }
     film.merge(&round, 1.0);
     let found: Vec<f64> = (0..pixels).map(|pixel| scalar(film.mean(pixel))).collect();
     let mean = found.iter().sum::<f64>() / pixels as f64;
@@ -208,7 +211,7 @@ fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Op
         bases.add(pixel, moment((1.0 - left).powi(2) * if c.is_finite() { c / brightness } else { 0.0 }));
         residuals.add(pixel, moment(left));
     });
-    if totals.stats.steps() == 0 {
+    if totals.stats.steps() == 0 || space.cancelled() {
         return None;
     }
     let mean = |round| {

@@ -14,6 +14,7 @@ use std::{
     net::{SocketAddr, TcpListener},
     sync::Arc,
     thread,
+    time::Duration,
 };
 
 use axum::{
@@ -22,7 +23,12 @@ use axum::{
     extract::{FromRequestParts, Request, State, WebSocketUpgrade},
     http::{HeaderName, HeaderValue, Method, StatusCode, header, request::Parts},
     response::{IntoResponse, Response},
-    serve::ListenerExt,
+    serve::Listener,
+};
+use hyper::server::conn::http1;
+use hyper_util::{
+    rt::{TokioIo, TokioTimer},
+    service::TowerToHyperService,
 };
 use tokio::sync::{Semaphore, mpsc, oneshot, watch};
 
@@ -94,7 +100,12 @@ pub struct Options {
     pub token: String,
     /// Most pages at once.
     pub pages: usize,
+    /// How long a connection may take to say what it wants; then it is closed.
+    pub patience: Duration,
 }
+
+/// Most connections at once that are not those of pages: each takes a descriptor, of which others need some. More wait.
+const CONNECTIONS: usize = 128;
 
 /// A server at work; it ends when dropped.
 #[derive(Debug)]
@@ -120,7 +131,7 @@ impl Server {
         let address = listener.local_addr()?;
         let (end, ended) = oneshot::channel();
         let access = Access { token: options.token.clone(), address };
-        let pages = Arc::new(Semaphore::new(options.pages));
+        let (pages, patience) = (Arc::new(Semaphore::new(options.pages)), options.patience);
         let room = Arc::new(Room {
             access,
             assets,
@@ -133,7 +144,7 @@ impl Server {
         thread::Builder::new().name("server".into()).spawn(move || {
             runtime.block_on(async {
                 tokio::select! {
-                    _ = serve(listener, room) => {}
+                    _ = serve(listener, room, patience) => {}
                     _ = ended => {}
                 }
             });
@@ -171,11 +182,26 @@ struct Room {
     most_pages: usize,
 }
 
-async fn serve(listener: TcpListener, room: Arc<Room>) -> io::Result<()> {
-    let listener = tokio::net::TcpListener::from_std(listener)?;
-    // Small messages must not wait for others. A system that refuses still works.
-    let listener = listener.tap_io(|stream| drop(stream.set_nodelay(true)));
-    axum::serve(listener, Router::new().fallback(answer).with_state(room)).await
+async fn serve(listener: TcpListener, room: Arc<Room>, patience: Duration) -> io::Result<()> {
+    let mut listener = tokio::net::TcpListener::from_std(listener)?;
+    let router = Router::new().fallback(answer).with_state(room);
+    let places = Arc::new(Semaphore::new(CONNECTIONS));
+    let mut http = http1::Builder::new();
+    http.timer(TokioTimer::new()).header_read_timeout(patience);
+    while let Ok(place) = Arc::clone(&places).acquire_owned().await {
+        // axum's, which goes on when the system refuses.
+        let (stream, _) = Listener::accept(&mut listener).await;
+        // Small messages must not wait for others. A system that refuses still works.
+        let _ = stream.set_nodelay(true);
+        let service = TowerToHyperService::new(router.clone());
+        let connection = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
+        tokio::spawn(async move {
+            // One that breaks off is no loss. It ends here where it becomes a WebSocket.
+            let _ = connection.await;
+            drop(place);
+        });
+    }
+    Ok(())
 }
 
 async fn answer(State(room): State<Arc<Room>>, request: Request) -> Response {

@@ -7,6 +7,7 @@ use std::{
 
 use super::*;
 
+const PATIENCE: Duration = Duration::from_millis(1500);
 const TOKEN: &str = "0123456789abcdef0123456789abcdef";
 const ASSETS: &[Asset] = &[
     Asset { name: "", kind: "text/html", text: "<title>page</title>" },
@@ -37,7 +38,7 @@ struct Bench {
 impl Bench {
     fn new(pages: usize) -> Self {
         let (stage, address) = (Stage::default(), "127.0.0.1:0".parse().unwrap());
-        let options = Options { address, token: TOKEN.into(), pages };
+        let options = Options { address, token: TOKEN.into(), pages, patience: PATIENCE };
         let server = Server::start(options, ASSETS, &stage, Arc::new(Echo::default())).unwrap();
         Self { server, stage }
     }
@@ -364,6 +365,21 @@ fn a_hundred_connections_that_say_nothing_or_half_hold_nobody_up() {
 }
 
 #[test]
+fn connections_that_say_nothing_are_closed_and_only_so_many_are_open() {
+    let bench = Bench::new(4);
+    let mut page = bench.open();
+    let silent: Vec<_> = (0..2 * CONNECTIONS).map(|_| bench.connect()).collect();
+    // It waits until one of the others has had its time.
+    assert_eq!(bench.status(&format!("/{TOKEN}/")), 200);
+    for mut connection in &silent {
+        assert_eq!(connection.read(&mut [0]).unwrap(), 0, "closed without a word");
+    }
+    // A page that says nothing stays.
+    page.say("hello");
+    assert_eq!(page.hear(), Some("heard hello".into()));
+}
+
+#[test]
 fn a_page_that_does_not_read_holds_nobody_up() {
     let bench = Bench::new(4);
     let _deaf = bench.open();
@@ -383,6 +399,7 @@ fn a_page_that_does_not_read_holds_nobody_up() {
 #[test]
 fn a_port_that_is_taken_is_an_error() {
     let bench = Bench::new(1);
-    let options = Options { address: bench.server.address(), token: TOKEN.into(), pages: 1 };
+    let options =
+        Options { address: bench.server.address(), token: TOKEN.into(), pages: 1, patience: PATIENCE };
     assert!(Server::start(options, ASSETS, &bench.stage, Arc::new(Echo::default())).is_err());
 }

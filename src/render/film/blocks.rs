@@ -4,6 +4,8 @@
 //! So the variance of a block's mean is not a sum of pixel variances; it is estimated like that of a pixel, from the
 //! spread of the rounds (Veach & Guibas 1997 §3.4). One square a block, level and channel is all that needs keeping.
 
+use rayon::prelude::*;
+
 use crate::math::Rgb;
 
 /// Sides of the blocks, pixels. The grids start at the film's top left; blocks at its right and bottom may be smaller.
@@ -26,12 +28,12 @@ impl Blocks {
 
     /// Adds a round, `values` being those of its pixels, three each; `one` is 1 in fixed point.
     pub(super) fn add(&mut self, values: &[f64], one: f64) {
-        for level in 0..self.squares.len() {
-            let means = self.means(level, values);
-            for (square, mean) in self.squares[level].iter_mut().zip(means) {
+        let width = self.width;
+        self.squares.par_iter_mut().enumerate().for_each(|(level, squares)| {
+            for (square, mean) in squares.iter_mut().zip(means(width, level, values)) {
                 *square += (mean * mean * one).round() as i128;
             }
-        }
+        });
     }
 
     /// Variance of the mean over `rounds` of the blocks of `level`, `means` being the pixels' means; units as there.
@@ -39,29 +41,30 @@ impl Blocks {
         let variance = |(square, mean): (&i128, f64)| {
             ((*square as f64 / (one * rounds) - mean * mean) / (rounds - 1.0)).max(0.0)
         };
-        let flat: Vec<f64> = self.squares[level].iter().zip(self.means(level, means)).map(variance).collect();
+        let means = self::means(self.width, level, means);
+        let flat: Vec<f64> = self.squares[level].iter().zip(means).map(variance).collect();
         flat.chunks_exact(3).map(Rgb::from_slice).collect()
     }
+}
 
-    /// Means over the blocks of `level`, three each, summed in the order of the pixels.
-    fn means(&self, level: usize, values: &[f64]) -> Vec<f64> {
-        let height = values.len() / 3 / self.width;
-        let side = BLOCK_SIDES.get(level).copied().unwrap_or(self.width.max(height));
-        let columns = self.width.div_ceil(side);
-        let mut sums = vec![0.0; self.squares[level].len()];
-        let mut counts = vec![0u32; sums.len() / 3];
-        for (pixel, value) in values.chunks_exact(3).enumerate() {
-            let block = pixel / self.width / side * columns + pixel % self.width / side;
-            counts[block] += 1;
-            for (sum, v) in sums[block * 3..].iter_mut().zip(value) {
-                *sum += v;
-            }
+/// Means over the blocks of `level`, three each, summed in the order of the pixels, three values each.
+fn means(width: usize, level: usize, values: &[f64]) -> Vec<f64> {
+    let height = values.len() / 3 / width;
+    let side = BLOCK_SIDES.get(level).copied().unwrap_or(width.max(height));
+    let columns = width.div_ceil(side);
+    let mut sums = vec![0.0; columns * height.div_ceil(side) * 3];
+    let mut counts = vec![0u32; sums.len() / 3];
+    for (pixel, value) in values.chunks_exact(3).enumerate() {
+        let block = pixel / width / side * columns + pixel % width / side;
+        counts[block] += 1;
+        for (sum, v) in sums[block * 3..].iter_mut().zip(value) {
+            *sum += v;
         }
-        for (sum, count) in sums.chunks_exact_mut(3).zip(counts) {
-            sum.iter_mut().for_each(|s| *s /= f64::from(count));
-        }
-        sums
     }
+    for (sum, count) in sums.chunks_exact_mut(3).zip(counts) {
+        sum.iter_mut().for_each(|s| *s /= f64::from(count));
+    }
+    sums
 }
 
 #[cfg(test)]

@@ -116,6 +116,58 @@ fn changes_that_no_longer_fit_are_those_of_the_page() {
 }
 
 #[test]
+fn a_region_is_cut_to_the_image() {
+    let bench = studio();
+    let mut watch = Watch::start(&bench, "studio/scene.toml");
+    let mut page = Page::of(&mut watch);
+    page.wait_until_done();
+    let state = page.wait_for_state(|_| true);
+    let [width, height] = [0, 1].map(|i| state["size"][i].as_u64().unwrap());
+    page.ask(json!({ "do": "region", "pixels": [width / 2, 1, width, height] }));
+    page.wait_for_state(|it| it["phase"] == "done" && it["window"] == json!([width / 2, 1, width, height]));
+    for (size, window) in [
+        ([width - 2, height - 2], [width / 2, 1, width - 2, height - 2]),
+        // There is nothing left of it.
+        ([width / 2, height], [0, 0, width / 2, height]),
+    ] {
+        let before = format!("size = [{width}, {height}]");
+        assert!(light(0).contains(&before));
+        bench.write(
+            "studio/scene.toml",
+            light(0).replace(&before, &format!("size = [{}, {}]", size[0], size[1])),
+        );
+        let state = page.wait_for_state(|it| it["phase"] == "done" && it["size"] == json!(size));
+        assert_eq!(state["window"], json!(window));
+    }
+    // Beside the image nothing can be drawn.
+    let image = page.wait_until_done();
+    page.ask(json!({ "do": "region", "pixels": [width, 0, width + 2, 2] }));
+    page.set("material", "clay", "roughness", 0.5);
+    assert_eq!(page.wait_for_state(|_| true)["image"], image + 1);
+    assert_eq!(page.wait_for_state(|_| true)["window"], json!([0, 0, width / 2, height]));
+}
+
+#[test]
+fn what_cannot_be_is_taken_back_until_something_else_is_asked_for() {
+    let bench = studio();
+    let mut watch = Watch::start(&bench, "studio/scene.toml");
+    let mut page = Page::of(&mut watch);
+    page.set("material", "clay", "ior", 1.4);
+    page.ask(json!({ "do": "set", "table": "material", "name": "clay", "key": "ior", "value": -5 }));
+    let state = page.wait_for_state(|it| it["errors"] != json!([]) && it["phase"] == "done");
+    assert!(state["edits"].as_str().unwrap().contains("1.4"), "{state}");
+    let hint = state["errors"][0]["hint"].as_str().unwrap().to_owned();
+    assert!(hint.contains("taken back") && !hint.contains("Drop"), "{hint}");
+    // Panels hear what the value is.
+    page.wait_for(|it| it["type"] == "scene" && it["materials"][0]["ior"]["value"].as_f64().unwrap() > 1.3);
+    page.ask(json!({ "do": "probe", "x": 0, "y": 0 }));
+    page.wait_for(|it| it["type"] == "probe");
+    assert_ne!(page.wait_for_state(|_| true)["errors"], json!([]), "nothing else was asked for");
+    page.ask(json!({ "do": "revert" }));
+    page.wait_for_state(|it| it["phase"] == "done" && it["errors"] == json!([]));
+}
+
+#[test]
 fn a_movement_leaves_one_image() {
     let bench = studio();
     let mut watch = Watch::start(&bench, "studio/scene.toml --spp 1");
