@@ -39,12 +39,15 @@ export class Camera {
   }
 
   #settle() {
-    if (performance.now() - this.#touched > 1500) this.#place = this.#said;
+    if (performance.now() - this.#touched <= 1500) return;
+    // Where the pointer left it, it goes on turning about the same point. Scene files round to a hundredth of a millimetre.
+    const stays = this.#place && Math.hypot(...add(this.#place.position, this.#said.position, -1)) < 2e-5;
+    this.#place = stays ? { ...this.#said, target: this.#place.target } : this.#said;
   }
 
   // As scene files say it.
   toml() {
-    this.#settle();
+    if (this.#said) this.#settle();
     if (!this.#place) return "";
     const { name, position, target, up, yfov, half_height } = this.#place;
     const keys = { name, position, target, up, yfov, half_height };
@@ -84,7 +87,7 @@ export class Camera {
   }
 
   #move(how) {
-    this.#settle();
+    if (this.#said) this.#settle();
     if (!this.#place) return;
     this.#place = { ...this.#place, ...how(this.#place) };
     this.#touched = performance.now();

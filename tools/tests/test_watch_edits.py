@@ -63,7 +63,9 @@ def test_what_cannot_be_is_taken_back(bench: Bench) -> None:
     bench.page.wait_for_selector("#banner:not([hidden])")
     # Who leaves the field sees what is.
     bench.page.locator(field).blur()
-    bench.page.wait_for_function("([field, shown]) => document.querySelector(field).value === shown", arg=[field, shown])
+    bench.page.wait_for_function(
+        "([field, shown]) => document.querySelector(field).value === shown", arg=[field, shown]
+    )
     assert "roughness" in bench.page.inner_text("#banner")
     assert bench.page.inner_text("#edits") == edits
     bench.changed(lambda: bench.page.fill("#material input[type=number][data-key=roughness]", "0.9"))
