@@ -21,7 +21,7 @@ use crate::{viewer, watch::Watch};
 const PORT: u16 = 7347;
 /// Most pages at once.
 const PAGES: usize = 16;
-/// How long a connection may say nothing that makes it one of a page.
+/// How long a connection may say nothing that makes it one of a page, and a page read nothing.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 #[derive(Clone, Debug, clap::Args)]

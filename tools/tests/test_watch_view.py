@@ -222,12 +222,14 @@ def test_what_is_not_finite_is_told_so(bench: Bench) -> None:
 def test_what_the_camera_sees_first_is_shown_and_follows(bench: Bench) -> None:
     image = bench.mean(MIDDLE)
     seen = {tuple(image)}
-    for name in ["albedo", "normal", "geometric_normal", "depth", "position", "material_id", "object_id", "variance"]:
+    names = ["albedo", "normal", "geometric_normal", "depth", "position", "uv", "material_id", "object_id", "variance"]
+    for name in names:
         bench.page.select_option("#layer", name)
         bench.page.wait_for_function(f"() => (document.body.dataset.shown ?? '').startsWith('{name} ')")
         seen.add(tuple(bench.mean(MIDDLE)))
-    # A box is flat, and it is alone: both normals are the same, and both numbers.
-    assert len(seen) == 7
+    # A box is flat, and it is alone: both normals are the same, and both numbers. It has no texture coordinates.
+    assert len(seen) == 8
+    assert (0, 0, 0) in seen
     bench.page.select_option("#layer", "albedo")
     bench.page.wait_for_function("() => (document.body.dataset.shown ?? '').startsWith('albedo ')")
     before = bench.mean(MIDDLE)

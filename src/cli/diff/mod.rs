@@ -15,10 +15,16 @@ use super::Exit;
 
 #[derive(Debug, clap::Args)]
 #[command(disable_help_flag = true)]
+#[command(override_usage = "ajar diff [OPTIONS] NEW.exr REFERENCE.exr")]
 #[command(after_help = "Exit codes: 0 the same picture, 1 a different one, 2 they cannot be compared.")]
 pub(super) struct Args {
     /// NEW.exr REFERENCE.exr and options; --help lists them
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true, value_name = "ARGUMENTS")]
+    #[arg(
+        trailing_var_arg = true,
+        allow_hyphen_values = true,
+        required = true,
+        value_name = "NEW.exr REFERENCE.exr"
+    )]
     arguments: Vec<OsString>,
 }
 

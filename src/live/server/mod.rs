@@ -100,7 +100,7 @@ pub struct Options {
     pub token: String,
     /// Most pages at once.
     pub pages: usize,
-    /// How long a connection may take to say what it wants; then it is closed.
+    /// How long a connection may take to say what it wants, and a page to read a message; then it is closed.
     pub patience: Duration,
 }
 
@@ -131,7 +131,7 @@ impl Server {
         let address = listener.local_addr()?;
         let (end, ended) = oneshot::channel();
         let access = Access { token: options.token.clone(), address };
-        let (pages, patience) = (Arc::new(Semaphore::new(options.pages)), options.patience);
+        let pages = Arc::new(Semaphore::new(options.pages));
         let room = Arc::new(Room {
             access,
             assets,
@@ -139,12 +139,13 @@ impl Server {
             program,
             pages,
             most_pages: options.pages,
+            patience: options.patience,
         });
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         thread::Builder::new().name("server".into()).spawn(move || {
             runtime.block_on(async {
                 tokio::select! {
-                    _ = serve(listener, room, patience) => {}
+                    _ = serve(listener, room) => {}
                     _ = ended => {}
                 }
             });
@@ -180,10 +181,12 @@ struct Room {
     program: Arc<dyn Program>,
     pages: Arc<Semaphore>,
     most_pages: usize,
+    patience: Duration,
 }
 
-async fn serve(listener: TcpListener, room: Arc<Room>, patience: Duration) -> io::Result<()> {
+async fn serve(listener: TcpListener, room: Arc<Room>) -> io::Result<()> {
     let mut listener = tokio::net::TcpListener::from_std(listener)?;
+    let patience = room.patience;
     let router = Router::new().fallback(answer).with_state(room);
     let places = Arc::new(Semaphore::new(CONNECTIONS));
     let mut http = http1::Builder::new();
@@ -245,9 +248,9 @@ async fn open_socket(room: &Arc<Room>, parts: &mut Parts) -> Response {
         Ok(upgrade) => upgrade,
         Err(refused) => return refused.into_response(),
     };
-    let (shown, program) = (room.shown.clone(), Arc::clone(&room.program));
+    let (patience, shown, program) = (room.patience, room.shown.clone(), Arc::clone(&room.program));
     socket::limited(upgrade).on_upgrade(async move |socket| {
-        socket::converse(socket, shown, program).await;
+        socket::converse(socket, patience, shown, program).await;
         drop(place);
     })
 }

@@ -21,8 +21,6 @@ use crate::frame::Frame;
 const LONGEST_TEXT: usize = 64 << 10;
 /// About the longest message to a page, bytes.
 const LONGEST_FRAME: usize = 384 << 10;
-/// How long a page may take to read a message.
-const PATIENCE: Duration = Duration::from_secs(10);
 /// Answers that wait for a page.
 const ANSWERS: usize = 64;
 
@@ -31,27 +29,29 @@ pub(super) fn limited(upgrade: WebSocketUpgrade) -> WebSocketUpgrade {
     upgrade.max_message_size(LONGEST_TEXT).max_frame_size(LONGEST_TEXT)
 }
 
-/// Speaks with a page until it leaves, breaks the rules or reads too slowly. A page that is slower than the frames come
-/// misses some.
+/// Speaks with a page until it leaves, breaks the rules or takes longer than `patience` to read a message. A page that is
+/// slower than the frames come misses some.
 pub(super) async fn converse(
-    mut socket: WebSocket,
+    socket: WebSocket,
+    patience: Duration,
     mut shown: watch::Receiver<Shown>,
     program: Arc<dyn Program>,
 ) {
+    let mut page = Page { socket, patience };
     let (replies, mut answers) = mpsc::channel(ANSWERS);
     let mut seen = Shown::default();
     shown.mark_changed();
     loop {
         let goes_on = tokio::select! {
-            message = socket.recv() => match message {
+            message = page.socket.recv() => match message {
                 Some(Ok(Message::Text(text))) => program.command(text.as_str().to_owned(), Reply(replies.clone())),
                 Some(Ok(Message::Ping(_) | Message::Pong(_))) => true,
                 Some(Ok(Message::Binary(_) | Message::Close(_)) | Err(_)) | None => false,
             },
-            Some(answer) = answers.recv() => send(&mut socket, Message::text(answer)).await,
+            Some(answer) = answers.recv() => page.send(Message::text(answer)).await,
             changed = shown.changed() => changed.is_ok() && {
                 let now = shown.borrow_and_update().clone();
-                let sent = update(&mut socket, &now, &seen).await;
+                let sent = page.update(&now, &seen).await;
                 seen = now;
                 sent
             },
@@ -62,26 +62,33 @@ pub(super) async fn converse(
     }
 }
 
-async fn update(socket: &mut WebSocket, now: &Shown, seen: &Shown) -> bool {
-    for document in &now.documents {
-        let is_known = seen.documents.iter().any(|known| Arc::ptr_eq(known, document));
-        if !is_known && !send(socket, Message::text(&**document)).await {
-            return false;
-        }
-    }
-    if Arc::ptr_eq(&now.frame, &seen.frame) {
-        return true;
-    }
-    for message in messages(&now.frame, Some(&seen.frame), LONGEST_FRAME) {
-        if !send(socket, Message::binary(message)).await {
-            return false;
-        }
-    }
-    true
+struct Page {
+    socket: WebSocket,
+    patience: Duration,
 }
 
-async fn send(socket: &mut WebSocket, message: Message) -> bool {
-    matches!(timeout(PATIENCE, socket.send(message)).await, Ok(Ok(())))
+impl Page {
+    async fn update(&mut self, now: &Shown, seen: &Shown) -> bool {
+        for document in &now.documents {
+            let is_known = seen.documents.iter().any(|known| Arc::ptr_eq(known, document));
+            if !is_known && !self.send(Message::text(&**document)).await {
+                return false;
+            }
+        }
+        if Arc::ptr_eq(&now.frame, &seen.frame) {
+            return true;
+        }
+        for message in messages(&now.frame, Some(&seen.frame), LONGEST_FRAME) {
+            if !self.send(Message::binary(message)).await {
+                return false;
+            }
+        }
+        true
+    }
+
+    async fn send(&mut self, message: Message) -> bool {
+        matches!(timeout(self.patience, self.socket.send(message)).await, Ok(Ok(())))
+    }
 }
 
 /// The messages that turn the `earlier` frame into `frame`, each of about `longest` bytes; at least one.
