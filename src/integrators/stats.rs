@@ -58,7 +58,7 @@ pub fn noise(film: &Film, window: Window) -> Option<Noise> {
     let relative = variances.iter().zip(&squares).map(|(v, s)| v / (s + floor));
     let relative: Vec<Option<f64>> = relative.zip(has_noise).map(|(r, noisy)| noisy.then_some(r)).collect();
     let enough = |tile: &Vec<Option<f64>>| tile.iter().flatten().count() * SPARSE >= tile.len();
-    let worst = tiles(&relative, width).into_par_iter().filter(enough).map(median).reduce(|| 0.0, f64::max);
+    let worst = tiles(&relative, width).filter(enough).map(median).reduce(|| 0.0, f64::max);
     let typical = median(relative);
     Some(Noise { typical: typical.sqrt(), worst_tile: worst.max(typical).sqrt() })
 }
@@ -78,14 +78,14 @@ fn smooth(values: &[f64], width: usize, height: usize) -> Vec<f64> {
         .collect()
 }
 
-fn tiles<T: Copy>(values: &[T], width: usize) -> Vec<Vec<T>> {
-    let columns = width.div_ceil(TILE);
-    let rows = (values.len() / width).div_ceil(TILE);
-    let mut tiles = vec![Vec::new(); columns * rows];
-    for (i, &value) in values.iter().enumerate() {
-        tiles[i / width / TILE * columns + i % width / TILE].push(value);
-    }
-    tiles
+/// The values of each tile, rows of tiles from the top.
+fn tiles<T: Copy + Send + Sync>(values: &[T], width: usize) -> impl ParallelIterator<Item = Vec<T>> {
+    let (columns, height) = (width.div_ceil(TILE), values.len() / width);
+    (0..columns * height.div_ceil(TILE)).into_par_iter().map(move |tile| {
+        let (x, y) = (tile % columns * TILE, tile / columns * TILE);
+        let row = |y: usize| &values[y * width + x..y * width + (x + TILE).min(width)];
+        (y..(y + TILE).min(height)).flat_map(row).copied().collect()
+    })
 }
 
 /// Of those that there are; 0 where there are none.

@@ -82,8 +82,9 @@ impl Film {
     /// An empty film whose unit is the power of two nearest to `brightness`.
     pub fn new(pixels: usize, brightness: f64) -> Self {
         let unit_bits = if brightness > 0.0 { brightness.log2().round() as i32 } else { 0 };
-        let zeros = vec![0; pixels * 3];
-        Self { sum: zeros.clone(), squares: zeros, blocks: None, rounds: 0, rejected: 0, unit_bits }
+        // Zeros that are asked for as such cost nothing until they are written to.
+        let [sum, squares] = [(); 2].map(|()| vec![0; pixels * 3]);
+        Self { sum, squares, blocks: None, rounds: 0, rejected: 0, unit_bits }
     }
 
     /// The same empty film, `width` pixels wide, that keeps the variance of blocks too.

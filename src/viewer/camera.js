@@ -15,6 +15,14 @@ function turned(v, axis, angle) {
   return v.map((x, i) => x * c + side[i] * s + axis[i] * along);
 }
 
+// Whether two cameras stand in one place and look the same way, whatever point each turns about. Scene files round to a
+// hundredth of a millimetre.
+function isSameView(a, b) {
+  const way = ({ position, target }) => unit(add(target, position, -1));
+  const apart = (v, w) => Math.hypot(...add(v, w, -1));
+  return apart(a.position, b.position) < 2e-5 && apart(way(a), way(b)) < 1e-4 && apart(unit(a.up), unit(b.up)) < 1e-4;
+}
+
 export class Camera {
   #place = null;
   #said = null;
@@ -40,8 +48,8 @@ export class Camera {
 
   #settle() {
     if (performance.now() - this.#touched <= 1500) return;
-    // Where the pointer left it, it goes on turning about the same point. Scene files round to a hundredth of a millimetre.
-    const stays = this.#place && Math.hypot(...add(this.#place.position, this.#said.position, -1)) < 2e-5;
+    // Where the pointer left it, it goes on turning about the same point.
+    const stays = this.#place && isSameView(this.#place, this.#said);
     this.#place = stays ? { ...this.#said, target: this.#place.target } : this.#said;
   }
 

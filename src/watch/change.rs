@@ -202,6 +202,9 @@ impl Watch<'_> {
 
     /// Renders anew.
     pub(super) fn begin_again(&mut self) {
+        if let Some(worker) = &self.worker {
+            worker.outdate();
+        }
         self.rest();
         self.resting = None;
         self.is_endless = false;

@@ -346,7 +346,7 @@ impl<'a> Watch<'a> {
     /// What is rendered is not what there is.
     fn outdate(&mut self) {
         if let Some(worker) = &self.worker {
-            worker.cancel();
+            worker.outdate();
         }
         self.is_stale = true;
     }

@@ -66,6 +66,8 @@ pub(super) struct Worker {
     cancel: Arc<AtomicBool>,
     /// Raised where there is no more need of glances.
     is_seen: Arc<AtomicBool>,
+    /// Raised where there is no more need of images.
+    is_outdated: Arc<AtomicBool>,
     orders: Sender<Order>,
     rested: Receiver<Rendered>,
 }
@@ -81,21 +83,28 @@ impl Worker {
     pub fn start(number: u64, job: Job, screen: Arc<Screen>, events: Sender<Event>) -> std::io::Result<Self> {
         let (orders, ordered) = channel();
         let (rests, rested) = channel();
-        let [cancel, is_seen] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
+        let [cancel, is_seen, is_outdated] = [(); 3].map(|()| Arc::new(AtomicBool::new(false)));
         let flags = [Arc::clone(&cancel), Arc::clone(&is_seen)];
-        let work = Arc::new(Work { job, screen, events, number: AtomicU64::new(number) });
+        let number = AtomicU64::new(number);
+        let work = Arc::new(Work { job, screen, events, number, is_outdated: Arc::clone(&is_outdated) });
         thread::Builder::new().name("render".into()).spawn(move || {
             // Also when a panic ends it.
             let _end = End(&work);
             work.run(&flags, ordered, &rests);
         })?;
-        Ok(Self { cancel, is_seen, orders, rested })
+        Ok(Self { cancel, is_seen, is_outdated, orders, rested })
     }
 
     /// Asks it to rest at once.
     pub fn cancel(&self) {
         self.cancel.store(true, Ordering::Relaxed);
         self.is_seen.store(true, Ordering::Relaxed);
+    }
+
+    /// The same, since there is something else to render: what it made is not worth showing.
+    pub fn outdate(&self) {
+        self.is_outdated.store(true, Ordering::Relaxed);
+        self.cancel();
     }
 
     /// Waits until it rests; `None` if it failed.
@@ -112,6 +121,7 @@ impl Resting {
     pub fn go_on(self, number: u64, rules: StopRules) -> Option<Worker> {
         let Self { rendered, worker } = self;
         worker.cancel.store(false, Ordering::Relaxed);
+        worker.is_outdated.store(false, Ordering::Relaxed);
         let done = (rendered.film, rendered.status.elapsed);
         worker.orders.send(Order { number, rules, done }).is_ok().then_some(worker)
     }
@@ -123,6 +133,7 @@ pub(super) struct Work {
     pub screen: Arc<Screen>,
     events: Sender<Event>,
     number: AtomicU64,
+    is_outdated: Arc<AtomicBool>,
 }
 
 struct End<'a>(&'a Work);
@@ -179,17 +190,17 @@ impl Work {
         }
     }
 
-    /// Shows what is rendered so far.
+    /// Shows what is rendered so far, as long as somebody wants to see it.
     pub fn show(&self, film: &Film) {
+        let is_outdated = || self.is_outdated.load(Ordering::Relaxed);
         let Job { plan, camera, .. } = &self.job;
         let exposure = f64::from(camera.0.exposure);
         let errors = |p| film.variance_of_mean(p).map(|v| v.sqrt() * exposure).as_vec3().to_array();
-        self.screen.show(Shot {
-            size: plan.size,
-            window: plan.settings.window,
-            pixels: pixels(film, exposure),
-            errors: Some((0..film.pixels()).into_par_iter().map(errors).collect()),
-        });
+        let errors = || (0..film.pixels()).into_par_iter().map(errors).collect();
+        let pixels = (!is_outdated()).then(|| pixels(film, exposure));
+        let errors = (!is_outdated()).then(errors);
+        let Some(pixels) = pixels.filter(|_| !is_outdated()) else { return };
+        self.screen.show(Shot { size: plan.size, window: plan.settings.window, pixels, errors });
     }
 }
 

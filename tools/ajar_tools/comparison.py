@@ -42,14 +42,13 @@ def compare_pictures(new: Picture, reference: Picture, settings: Settings) -> Ve
         if result.gate in ENDING and result.status is Status.FAIL and not goes_on(result.gate, verdict, settings):
             # What ends the comparison cannot be excused: nothing else was looked at.
             return judge(verdict, replace(settings, excused=()))
-    verdict.flip = flip.flip_map(new, reference, settings)
-    statistics = statistical.check(new, reference, settings)
-    verdict.gates += [
-        statistics,
-        variance.check(new, reference, settings),
-        flip.check(verdict.flip, settings, unjudged(statistics, settings)),
-        numbers.check(new, reference, settings),
-    ]
+    # numpy works without the interpreter's lock.
+    with ThreadPoolExecutor() as pool:
+        seen = pool.submit(flip.flip_map, new, reference, settings)
+        checks = [pool.submit(gate.check, new, reference, settings) for gate in (statistical, variance, numbers)]
+    verdict.flip = seen.result()
+    statistics, noise, measures = (check.result() for check in checks)
+    verdict.gates += [statistics, noise, flip.check(verdict.flip, settings, unjudged(statistics, settings)), measures]
     change = statistics.numbers.get("smallest_change", 0.0)
     if statistics.status is Status.PASS and change > VAGUE:
         verdict.warnings.append(

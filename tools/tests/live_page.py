@@ -139,8 +139,11 @@ class Bench:
         return str(self.page.evaluate("navigator.clipboard.readText()"))
 
 
-def telling(change: Callable[[dict[str, Any]], object]) -> Callable[[Any], None]:
-    """For `open`: the page hears each document of the program as `change` leaves it."""
+def telling(
+    change: Callable[[dict[str, Any]], object] = lambda _document: None,
+    spoil: Callable[[bytearray], object] = lambda _part: None,
+) -> Callable[[Any], None]:
+    """For `open`: the page hears each document of the program as `change` leaves it, and each part as `spoil` does."""
 
     def route(socket: Any) -> None:
         server = socket.connect_to_server()
@@ -150,6 +153,10 @@ def telling(change: Callable[[dict[str, Any]], object]) -> Callable[[Any], None]
                 document = json.loads(message)
                 change(document)
                 message = json.dumps(document)
+            else:
+                part = bytearray(message)
+                spoil(part)
+                message = bytes(part)
             socket.send(message)
 
         server.on_message(hand_on)

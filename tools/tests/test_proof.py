@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import twins
 from ajar_tools import Outcome, Verdict, compare, read
 from ajar_tools.statistics import from_rounds
 from mutants import EDITS, Edit
@@ -65,11 +66,21 @@ def failing(verdict: Verdict) -> set[str]:
 
 
 def test_other_seeds_are_twins(integrator: str, reference: Path, render: Renderer) -> None:
-    twins = [render(integrator, seed) for seed in (1, 2)]
-    for pair in ((twins[0], reference), (twins[1], reference), (twins[0], twins[1])):
+    first, second = (render(integrator, seed) for seed in (1, 2))
+    for pair in ((first, reference), (second, reference), (first, second)):
         verdict = compare(*pair)
         assert verdict.outcome is Outcome.PASS, verdict.text()
         assert "statistics" in {gate.gate for gate in verdict.gates}
+
+
+@pytest.mark.skipif(
+    not {"AJAR_BIN", "AJAR_RELEASE_TESTS"} <= set(os.environ),
+    reason="renders 492 images: AJAR_RELEASE_TESTS=1, with AJAR_BIN naming a release build, makes them",
+)
+def test_false_alarms_of_forty_twins_of_each_kind_are_chance() -> None:
+    twins.render(40)
+    _, problems = twins.section(40)
+    assert problems == []
 
 
 def test_two_percent_more_energy_are_found(integrator: str, reference: Path, render: Renderer) -> None:

@@ -176,6 +176,16 @@ def test_the_camera_is_copied_as_it_is(bench: Bench) -> None:
     bench.changed(lambda: bench.scene.write_text(SCENE))
 
 
+def test_a_camera_that_was_turned_in_the_file_is_taken_over(bench: Bench) -> None:
+    turned = SCENE.replace("target = [0, 0, 0]", "target = [-1, 0, 0]")
+    bench.changed(lambda: bench.scene.write_text(turned))
+    text = bench.copied(lambda: bench.page.click("#copy-camera"))
+    camera = tomllib.loads(text)["camera"][0]
+    way = np.subtract(camera["target"], camera["position"])
+    assert way / np.linalg.norm(way) == pytest.approx(np.array([-4, -2, -4]) / 6, abs=1e-4)
+    bench.changed(lambda: bench.scene.write_text(SCENE))
+
+
 def test_pages_from_elsewhere_copy_too(bench: Bench) -> None:
     # Over plain HTTP from another machine there is no such thing.
     gone = "Object.defineProperty(navigator, 'clipboard', { value: undefined })"

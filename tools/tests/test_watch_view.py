@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
+import struct
 import subprocess
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -216,6 +218,22 @@ def test_what_is_not_finite_is_told_so(bench: Bench) -> None:
     page = bench.open(telling(lambda it: it.update(value=[None, 1, 2]) if it["type"] == "probe" else None))
     page.mouse.move(*bench.at(0.5, 0.5, page))
     page.wait_for_function("() => document.getElementById('probe').innerText.includes('R not finite')")
+    page.close()
+
+
+def test_what_is_no_number_is_pink(bench: Bench) -> None:
+    def spoil(part: bytearray) -> None:
+        # The red of the first pixel of the first tile, behind the header of the part and the number of the tile.
+        if struct.unpack_from("<I", part, 16) == (0,):
+            struct.pack_into("<e", part, 20, math.nan)
+
+    def pink(page: Any) -> int:
+        return int((bench.seen(page=page) == [255, 0, 255]).all(axis=2).sum())
+
+    page = bench.open(telling(spoil=spoil))
+    zoom = page.evaluate("Number(canvas.dataset.zoom)")
+    assert pink(bench.page) == 0
+    assert pink(page) == pytest.approx(zoom**2, abs=2 * zoom + 1)
     page.close()
 
 

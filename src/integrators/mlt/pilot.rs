@@ -3,7 +3,10 @@
 //! All of it is a function of world, settings and seed, and stays as it is for all rounds: then any part of the rounds
 //! can be rendered anywhere, and each is unbiased.
 
+use std::ops::Range;
+
 use ajar_render::{film::Film, math::scalar};
+use rayon::prelude::*;
 
 use super::{
     base::{self, Split},
@@ -136,22 +139,23 @@ fn seen_by_walks(chains: &PlainChains<'_>) -> Vec<f64> {
 
 /// Mean over the square of pixels around each.
 fn smooth(values: &[f64], width: usize, reach: usize) -> Vec<f64> {
-    let rows = values.len() / width;
+    let height = values.len() / width;
     let span = |i: usize, n: usize| i.saturating_sub(reach)..(i + reach + 1).min(n);
-    let across: Vec<f64> = (0..values.len())
-        .map(|i| {
-            let (row, columns) = (i / width * width, span(i % width, width));
-            let count = columns.len() as f64;
-            values[row + columns.start..row + columns.end].iter().sum::<f64>() / count
-        })
-        .collect();
-    (0..values.len())
-        .map(|i| {
-            let rows = span(i / width, rows);
-            let count = rows.len() as f64;
-            rows.map(|row| across[row * width + i % width]).sum::<f64>() / count
-        })
-        .collect()
+    let across = |row: &[f64]| -> Vec<f64> {
+        let mean = |columns: Range<usize>| row[columns.clone()].iter().sum::<f64>() / columns.len() as f64;
+        (0..width).map(|x| mean(span(x, width))).collect()
+    };
+    let rows: Vec<Vec<f64>> = values.par_chunks(width).map(across).collect();
+    let down = |y: usize| {
+        let rows = &rows[span(y, height)];
+        let mut sums = vec![0.0; width];
+        for row in rows {
+            sums.iter_mut().zip(row).for_each(|(sum, value)| *sum += value);
+        }
+        let count = rows.len() as f64;
+        sums.into_iter().map(move |sum| sum / count)
+    };
+    (0..height).into_par_iter().flat_map_iter(down).collect()
 }
 
 /// Relative second moments of one sample, averaged over pixels, and costs in rays.
@@ -196,9 +200,9 @@ impl Gain {
 /// tracer, however seldom it would find them itself.
 fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Option<Gain> {
     let space = &chains.space;
-    // Sums are made per row of pixels and then in order: the order of threads must not show.
-    let rows = Film::new(space.window.pixels(), 1.0);
-    let (paths, bases, residuals) = (rows.round(), rows.round(), rows.round());
+    // Sums are made per pixel and then in order: the order of threads must not show.
+    let film = || Film::new(space.window.pixels(), 1.0);
+    let [paths, bases, residuals] = [(); 3].map(|()| film().round());
     let run = Run { length: LENGTH, ..chains.run(GAIN_ROUND, mutations) };
     let totals = chains.render(&run, |path, aim, share| {
         let Some(pixel) = space.pixel(path.raster) else { return };
@@ -211,33 +215,31 @@ fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Op
         bases.add(pixel, moment((1.0 - left).powi(2) * if c.is_finite() { c / brightness } else { 0.0 }));
         residuals.add(pixel, moment(left));
     });
-    if totals.stats.steps() == 0 || space.cancelled() {
-        return None;
-    }
     let mean = |round| {
-        let mut film = rows.clone();
+        let mut film = film();
         film.merge(round, 1.0);
         (0..film.pixels()).map(|pixel| film.mean(pixel).x).sum::<f64>()
     };
-    let settings = Settings { samples_per_round: 1, ..chains.cx.settings.clone() };
-    Some(Gain {
-        path: mean(&paths),
-        base: mean(&bases),
-        residual: mean(&residuals),
-        path_cost: path_cost(space, &settings),
+    let mean = |round| (!space.cancelled()).then(|| mean(round));
+    let gain = Gain {
+        path: mean(&paths)?,
+        base: mean(&bases)?,
+        residual: mean(&residuals)?,
+        path_cost: path_cost(space, chains.cx.settings.seed),
         mutation_cost: totals.rays_per_mutation() + OVERHEAD,
-    })
+    };
+    (totals.stats.steps() > 0 && !space.cancelled()).then_some(gain)
 }
 
 /// Largest relative contribution that counts in the second moments.
 const MOST: f64 = 1e5;
 
 /// Rays of one eye path.
-fn path_cost(space: &Space<'_>, settings: &Settings) -> f64 {
+fn path_cost(space: &Space<'_>, seed: u64) -> f64 {
     const STRIDE: usize = 37;
-    let pixels = (0..space.window.pixels()).step_by(STRIDE);
-    let count = pixels.len() as f64;
-    let vertices: usize = pixels.map(|pixel| base::vertices(space, settings.seed, pixel)).sum();
+    let paths = space.window.pixels().div_ceil(STRIDE);
+    let vertices = |path| if space.cancelled() { 0 } else { base::vertices(space, seed, path * STRIDE) };
+    let vertices: usize = (0..paths).into_par_iter().map(vertices).sum();
     // At each vertex one ray to a light and one that goes on.
-    2.0 * vertices as f64 / count
+    2.0 * vertices as f64 / paths as f64
 }

@@ -51,20 +51,20 @@ impl Blocks {
 fn means(width: usize, level: usize, values: &[f64]) -> Vec<f64> {
     let height = values.len() / 3 / width;
     let side = BLOCK_SIDES.get(level).copied().unwrap_or(width.max(height));
-    let columns = width.div_ceil(side);
-    let mut sums = vec![0.0; columns * height.div_ceil(side) * 3];
-    let mut counts = vec![0u32; sums.len() / 3];
-    for (pixel, value) in values.chunks_exact(3).enumerate() {
-        let block = pixel / width / side * columns + pixel % width / side;
-        counts[block] += 1;
-        for (sum, v) in sums[block * 3..].iter_mut().zip(value) {
-            *sum += v;
+    let band = |rows: &[f64]| {
+        let mut sums = vec![[0.0; 3]; width.div_ceil(side)];
+        for row in rows.chunks(width * 3) {
+            for (sum, pixels) in sums.iter_mut().zip(row.chunks(side * 3)) {
+                for pixel in pixels.chunks_exact(3) {
+                    sum.iter_mut().zip(pixel).for_each(|(sum, v)| *sum += v);
+                }
+            }
         }
-    }
-    for (sum, count) in sums.chunks_exact_mut(3).zip(counts) {
-        sum.iter_mut().for_each(|s| *s /= f64::from(count));
-    }
-    sums
+        let rows = rows.len() / 3 / width;
+        let count = move |column: usize| (side.min(width - column * side) * rows) as f64;
+        sums.into_iter().enumerate().flat_map(move |(column, sum)| sum.map(|s| s / count(column)))
+    };
+    values.par_chunks(side * width * 3).flat_map_iter(band).collect()
 }
 
 #[cfg(test)]

@@ -64,20 +64,21 @@ def beyond_neighbours(
     a: np.ndarray, b: np.ndarray, places: tuple[np.ndarray, ...], tolerance: np.ndarray
 ) -> np.ndarray:
     """At which places `a` is out of the range of the 3×3 pixels of `b` around, which is wider at edges."""
-    low, high = (around(b, extreme)[places] for extreme in (np.minimum, np.maximum))
+    low, high = around(b, places)
     edge = OF_RANGE * (high - low) + OF_VALUE * np.maximum(np.abs(low), np.abs(high))
     slack = np.where(high - low > tolerance, edge, tolerance)
     value = a[places]
     return np.asarray((value < low - slack) | (value > high + slack))
 
 
-def around(plane: np.ndarray, extreme: np.ufunc) -> np.ndarray:
-    """The least or largest of 3×3 pixels; beyond the border is what lies on it."""
-    for axis in (0, 1):
-        ahead, behind = (slice(1, None), slice(None)), (slice(None, -1), slice(None))
-        first, last = (ahead, behind) if axis == 0 else (ahead[::-1], behind[::-1])
-        found = plane.copy()
-        extreme(found[first], plane[last], out=found[first])
-        extreme(found[last], plane[first], out=found[last])
-        plane = found
-    return plane
+def around(plane: np.ndarray, places: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the largest of the 3×3 pixels around each place; beyond the border is what lies on it."""
+    rows, columns = (
+        [np.clip(places[axis] + step, 0, extent - 1) for step in (-1, 0, 1)] for axis, extent in enumerate(plane.shape)
+    )
+    low = high = plane[places]
+    for row in rows:
+        for column in columns:
+            value = plane[row, column]
+            low, high = np.minimum(low, value), np.maximum(high, value)
+    return low, high

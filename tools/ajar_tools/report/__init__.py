@@ -86,8 +86,9 @@ def images(verdict: Verdict, settings: Settings) -> dict[str, Any]:
     factor = 1
     while (width // factor) * (height // factor) > MOST_PIXELS:
         factor += 1
-    colors = [shrunk(picture.color, factor) for picture in (new, reference)]
+    # numpy and zlib work without the interpreter's lock.
     with ThreadPoolExecutor() as pool:
+        colors = list(pool.map(lambda picture: shrunk(picture.color, factor), (new, reference)))
         ours, theirs = pool.map(encoded, colors)
     flip = verdict.flip or flip_map(new, reference, settings)
     data: dict[str, Any] = {

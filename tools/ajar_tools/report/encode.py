@@ -46,5 +46,6 @@ def shared_exponent(color: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     _, exponent = np.frexp(brightest)
     stored = np.where(brightest > 0, np.clip(exponent + BIAS, 0, 255), 0).astype(np.uint8)
     scale = np.where(stored > 0, np.ldexp(np.float32(256), BIAS - np.maximum(stored, 9).astype(np.int32)), 0)
-    mantissa = np.minimum(np.maximum(color, 0) * scale[..., None], 255)
-    return mantissa.astype(np.uint8), stored
+    # Repeated, for numpy is slow where it goes along three values at a time.
+    mantissa = np.maximum(color, 0) * np.repeat(scale, color.shape[2], axis=1).reshape(color.shape)
+    return np.minimum(mantissa, 255, out=mantissa).astype(np.uint8), stored
