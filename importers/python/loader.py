@@ -3,7 +3,8 @@
 `package`  its name,
 `files`    from paths inside it to their texts: modules, and what they read by `pkgutil.get_data`,
 `start`    the module whose `main()` is called,
-`program`  what the program is called.
+`program`  what the program is called,
+`codes`    what is added to its exit codes.
 """
 
 import importlib.abc
@@ -53,4 +54,20 @@ try:
 except ModuleNotFoundError as error:
     print(f"error: {sys.argv[0]} needs {error.name}, which {sys.executable} does not have", file=sys.stderr)
     sys.exit(2)
-sys.exit(start.main())
+except ImportError as error:
+    print(f"error: {sys.argv[0]} does not work with {sys.executable}: {error}", file=sys.stderr)
+    sys.exit(2)
+
+
+def run():
+    """The exit code of the program."""
+    try:
+        return start.main() or 0
+    except SystemExit as end:
+        if isinstance(end.code, str):
+            print(end.code, file=sys.stderr)
+            return 1
+        return end.code or 0
+
+
+sys.exit(CARRIED["codes"] + run())

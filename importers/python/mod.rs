@@ -26,6 +26,8 @@ pub struct Program {
     pub files: &'static [(&'static str, &'static str)],
     /// The module whose `main()` is the program.
     pub start: &'static str,
+    /// What is added to its exit codes, so that those of a Python that fails are none of them.
+    pub codes: u8,
     /// What it needs.
     pub environment: Environment,
 }
@@ -41,8 +43,9 @@ impl Program {
         command.args(["-I", "-c", LOADER]);
         let files: Map<String, Value> =
             self.files.iter().map(|&(path, text)| (path.to_owned(), text.into())).collect();
+        let Self { name, package, start, codes, .. } = self;
         let input =
-            json!({ "program": self.name, "package": self.package, "start": self.start, "files": files });
+            json!({ "program": name, "package": package, "start": start, "codes": codes, "files": files });
         Ok((command, input.to_string().into_bytes()))
     }
 }

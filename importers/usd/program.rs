@@ -9,6 +9,7 @@ use crate::{
 pub(super) const PROGRAM: Program = Program {
     name: "the USD importer",
     package: "ajar_import_usd",
+    codes: 0,
     start: "main",
     files: package_files![
         "ajar_import_usd":

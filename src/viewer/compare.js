@@ -1,5 +1,6 @@
 // Images of before, one a change: looked at while the pointer is on them, or compared with the image.
 
+import { imageOf } from "./link.js";
 import { say } from "./status.js";
 
 const $ = (id) => document.getElementById(id);
@@ -120,10 +121,9 @@ export class Compare {
 
 // The image of a number, or null.
 async function fetched(image) {
-  const answer = await fetch(new URL(`image/${image}`, location.href)).catch(() => null);
-  if (answer?.ok) return answer.arrayBuffer();
-  say("That image is no longer kept.");
-  return null;
+  const { data } = await imageOf(image);
+  if (!data) say("That image is no longer kept.");
+  return data;
 }
 
 function span(text, kind = "") {

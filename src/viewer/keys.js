@@ -36,7 +36,10 @@ export function addKeys(actions) {
     const isTyping = event.target.matches?.("input[type=number], textarea, select");
     if (isTyping && ["Enter", "Escape"].includes(event.key)) event.target.blur();
     const isPressing = event.key === " " && event.target.matches?.("button, summary, input[type=color]");
-    if (isTyping || isPressing || event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+    // Some keyboards need AltGr, or Option, for brackets.
+    const isBracket = event.altKey && ["[", "]"].includes(event.key);
+    const isCommand = !isBracket && (event.ctrlKey || event.metaKey || event.altKey);
+    if (isTyping || isPressing || isCommand || document.querySelector("dialog[open]")) return;
     const found = keys.find(([key]) => key === event.key.toLowerCase());
     if (!found) return;
     event.preventDefault();

@@ -1,5 +1,6 @@
 // What is shown: the image, or a view of what the camera sees first, which the program makes when it is asked.
 
+import { imageOf } from "./link.js";
 import { say } from "./status.js";
 
 const $ = (id) => document.getElementById(id);
@@ -49,17 +50,17 @@ export class Layers {
     if (!this.name || image === 0 || wanted === this.#has || this.#asks || isSoon) return;
     this.#asks = true;
     const name = this.name;
-    const answer = await fetch(new URL(`image/${name}`, location.href)).catch(() => null);
-    if (answer?.ok && name === this.name) {
-      this.#screen.layer.add(await answer.arrayBuffer());
+    const { data, isRefused } = await imageOf(name);
+    this.#asks = false;
+    if (data && name === this.name) {
+      this.#screen.layer.add(data);
       this.#has = wanted;
       this.#at = performance.now();
       this.#show(true);
     }
-    this.#asks = false;
     // What was said meanwhile; a view that could not be made is asked for again when there is more to see.
-    if (answer?.ok) this.follow(this.#state);
-    else if (answer) say("The view could not be made.");
+    if (data) this.follow(this.#state);
+    else if (isRefused) say("The view could not be made.");
   }
 
   #show(isShown) {

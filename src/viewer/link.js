@@ -44,8 +44,9 @@ export class Link {
       else this.tiles(data);
     };
     socket.onclose = async () => {
-      this.state(!isOpened && (await isThere()) ? "full" : "closed");
+      const isFull = !isOpened && (await isThere());
       if (socket !== this.#socket) return;
+      this.state(isFull ? "full" : "closed");
       this.#timer = setTimeout(() => this.#connect(), this.#pause);
       this.#pause = Math.min(this.#pause * 2, LONGEST_PAUSE);
     };
@@ -56,6 +57,16 @@ export class Link {
 // Whether the program answers: browsers do not tell why a socket was refused.
 function isThere() {
   return fetch(new URL("style.css", location.href)).then(({ ok }) => ok, () => false);
+}
+
+// The image of a name, or null where there is none, the program refused it, or the connection broke.
+export async function imageOf(name) {
+  try {
+    const answer = await fetch(new URL(`image/${name}`, location.href));
+    return answer.ok ? { data: await answer.arrayBuffer() } : { data: null, isRefused: true };
+  } catch {
+    return { data: null };
+  }
 }
 
 // Parts of frames: u32 width, height, whether it is the last part, count; then for each tile u32 number and its halves.

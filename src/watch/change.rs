@@ -12,7 +12,7 @@ use super::{
     Event, Phase, View, Watch, describe,
     draft::Draft,
     edits,
-    opened::{Desk, Opened, Read},
+    opened::{Desk, Opened, Read, names},
     state::Label,
     worker::{Job, Worker},
 };
@@ -96,7 +96,7 @@ impl Watch<'_> {
             self.keep_snapshot();
             self.keep_on_disk(view);
         }
-        self.state.shown_for = self.state.changed.clone();
+        self.state.shown_for = std::mem::take(&mut self.state.waiting);
         self.changed.clear();
         self.sound_draft = self.draft.clone();
         self.state.errors.clear();
@@ -129,6 +129,7 @@ impl Watch<'_> {
             // What cannot be is taken back, also on the pages that show it.
             self.draft = self.sound_draft.clone();
             self.about = self.about.to_string().into();
+            self.state.waiting = names(&self.changed);
             self.is_stale = !self.changed.is_empty();
         }
         self.state.phase = match self.opened {

@@ -60,7 +60,7 @@ impl Watch<'_> {
         let before = self.draft.clone();
         change(&mut self.draft, opened);
         if self.draft != before {
-            self.state.changed = vec![what.to_owned()];
+            self.state.note([what.to_owned()]);
             (self.state.saved, self.state.saved_without) = (None, Vec::new());
             self.gesture.step(what, Instant::now());
             self.outdate();

@@ -296,6 +296,7 @@ impl<'a> Watch<'a> {
             }
         };
         self.rest();
+        self.screen.end();
         self.keep_on_disk(view);
         if let Some(archive) = self.archive.take() {
             view.say(&archive.end(&self.events.1));
@@ -314,7 +315,7 @@ impl<'a> Watch<'a> {
     fn hear(&mut self, event: Event, view: &mut dyn View) {
         match event {
             Event::Files(files) => {
-                self.state.changed = names(&files);
+                self.state.note(names(&files));
                 self.imports.forget(&files);
                 self.gesture.end();
                 self.doubt.get_or_insert_with(|| Instant::now() + DOUBT);

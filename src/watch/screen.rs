@@ -3,6 +3,7 @@
 use std::{
     io,
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc::Sender},
+    time::Duration,
 };
 
 use ajar_integrators::Window;
@@ -10,6 +11,9 @@ use ajar_live::{frame::Frame, server::Stage, tev::Tev};
 use ajar_scene::Diagnostic;
 
 use super::Event;
+
+/// How long the end of the program waits until tev has the last image.
+const FAREWELL: Duration = Duration::from_secs(5);
 
 /// Pixels of linear RGB, rows from the top.
 pub(super) type Pixels = Vec<[f32; 3]>;
@@ -69,6 +73,13 @@ impl Screen {
         self.stage.show_frame(Arc::new(frame));
     }
 
+    /// Waits until tev has what is shown, but not for ever.
+    pub fn end(&self) {
+        if let Some(tev) = &self.tev {
+            tev.empty();
+        }
+    }
+
     /// What is shown, coarse images left out.
     pub fn frame(&self) -> Arc<Frame> {
         Arc::clone(&lock(&self.picture).frame)
@@ -115,8 +126,15 @@ impl Picture {
 /// The last image that tev did not get yet: a tev that is slow or away holds nobody up.
 #[derive(Default)]
 struct Mailbox {
-    next: Mutex<Option<([usize; 2], Pixels)>>,
-    filled: Condvar,
+    post: Mutex<Post>,
+    moved: Condvar,
+}
+
+#[derive(Default)]
+struct Post {
+    next: Option<([usize; 2], Pixels)>,
+    /// Whether one is on its way.
+    is_sending: bool,
 }
 
 impl Mailbox {
@@ -126,26 +144,33 @@ impl Mailbox {
         std::thread::spawn(move || {
             let mut is_away = false;
             while let Some(mailbox) = weak.upgrade() {
-                let mut next = lock(&mailbox.next);
-                while next.is_none() {
-                    next = mailbox.filled.wait(next).unwrap_or_else(PoisonError::into_inner);
-                }
-                let Some(([width, height], pixels)) = next.take() else { continue };
-                drop(next);
+                let post = mailbox.moved.wait_while(lock(&mailbox.post), |post| post.next.is_none());
+                let mut post = post.unwrap_or_else(PoisonError::into_inner);
+                let Some(([width, height], pixels)) = post.next.take() else { continue };
+                post.is_sending = true;
+                drop(post);
                 let shown = tev.show(width, height, &pixels);
                 if let Some(message) = news(&tev, &shown, is_away) {
                     // Who hears it may have ended.
                     let _ = events.send(Event::Said(message));
                 }
                 is_away = shown.is_err();
+                lock(&mailbox.post).is_sending = false;
+                mailbox.moved.notify_all();
             }
         });
         mailbox
     }
 
     fn put(&self, size: [usize; 2], pixels: &[[f32; 3]]) {
-        *lock(&self.next) = Some((size, pixels.to_vec()));
-        self.filled.notify_one();
+        lock(&self.post).next = Some((size, pixels.to_vec()));
+        self.moved.notify_all();
+    }
+
+    fn empty(&self) {
+        let is_full = |post: &mut Post| post.next.is_some() || post.is_sending;
+        // Who does not take it by then does not get it.
+        let _ = self.moved.wait_timeout_while(lock(&self.post), FAREWELL, is_full);
     }
 }
 

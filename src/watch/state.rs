@@ -37,6 +37,9 @@ pub struct State {
     pub image: u64,
     /// Names of what changed last.
     pub changed: Vec<String>,
+    /// Names of all that changed since the image that is shown.
+    #[serde(skip)]
+    pub(super) waiting: Vec<String>,
     /// Names of what changed for the image that is shown.
     pub shown_for: Vec<String>,
     /// Why the last change is not shown.
@@ -85,6 +88,16 @@ pub struct Label {
 }
 
 impl State {
+    /// Something changed.
+    pub(super) fn note(&mut self, names: impl IntoIterator<Item = String>) {
+        self.changed = names.into_iter().collect();
+        for name in &self.changed {
+            if !self.waiting.contains(name) {
+                self.waiting.push(name.clone());
+            }
+        }
+    }
+
     pub(super) fn plan(&mut self, plan: &Plan) {
         let Window { x0, y0, x1, y1 } = plan.settings.window;
         (self.size, self.window) = (plan.size, [x0, y0, x1, y1]);
@@ -98,5 +111,20 @@ impl State {
         self.rejected = status.rejected;
         self.noise = status.noise.map(|noise| noise.typical);
         self.worst_tile = status.noise.map(|noise| noise.worst_tile);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_that_changed_since_an_image_is_kept() {
+        let mut state = State::default();
+        for names in [&["a.obj"][..], &["look.toml", "a.obj"], &["clay"]] {
+            state.note(names.iter().map(|name| (*name).to_owned()));
+        }
+        assert_eq!(state.changed, ["clay"]);
+        assert_eq!(state.waiting, ["a.obj", "look.toml", "clay"]);
     }
 }

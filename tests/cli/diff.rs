@@ -33,3 +33,11 @@ fn an_environment_that_cannot_be_made_leaves_nothing_and_says_how_to_make_it() {
     run(&bench, &variables).exits(2).says(&["cannot be made", "python3 -m venv", "AJAR_DIFF_PYTHON"]);
     assert!(!cache.join("ajar").exists());
 }
+
+#[cfg(unix)]
+#[test]
+fn a_program_that_is_no_python_gives_no_verdict() {
+    for program in ["/bin/true", "/bin/false"] {
+        run(&Bench::new(), &[("AJAR_DIFF_PYTHON", program)]).exits(2).says(&["without a verdict"]);
+    }
+}

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 
+from ajar_tools.gates.structure import COLOR_SPACE
 from ajar_tools.picture import CannotCompareError, Picture, read
 from ajar_tools.statistics import BlockStatistics, as_attributes, from_rounds
 
@@ -74,6 +75,11 @@ def write(like: Picture, color: np.ndarray, statistics: BlockStatistics, output:
     spec.channelnames = tuple(like.color_channels)
     spec.x, spec.y = data.x, data.y
     spec.full_x, spec.full_y, spec.full_width, spec.full_height = display.x, display.y, display.width, display.height
+    # Elsewhere they would be other colours.
+    for name in (name for name in COLOR_SPACE if name in like.attributes):
+        value = like.attributes[name]
+        kind = oiio.TypeDesc(f"float[{len(value)}]") if isinstance(value, tuple) else oiio.TypeDesc("string")
+        spec.attribute(name, kind, value)
     spec.attribute("ajar:rounds", statistics.rounds)
     for name, values in as_attributes(statistics).items():
         spec.attribute(name, oiio.TypeDesc(f"float[{values.size}]"), values)

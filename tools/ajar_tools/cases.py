@@ -17,6 +17,7 @@ from ajar_tools.settings import Settings, SettingsError, load, parse
 SCENE, REFERENCE, CONFIG = "scene.toml", "reference.exr", "compare.toml"
 # Seconds after which a render is stopped, unless the case allows more.
 TIMEOUT = 1200
+LONGEST = 1_000_000
 # Lines of a renderer's complaint that are shown.
 MOST_LINES = 30
 
@@ -81,8 +82,8 @@ def read_case(folder: Path, base: Settings | None = None) -> Case:
     if not isinstance(table, dict) or not table.keys() <= {"scene", "arguments", "command", "timeout"}:
         raise SettingsError(f"{config}: [render] knows scene, arguments, command and timeout")
     timeout = table.get("timeout", TIMEOUT)
-    if not isinstance(timeout, (int, float)) or not timeout > 0:
-        raise SettingsError(f"{config}: timeout must be a number of seconds")
+    if isinstance(timeout, bool) or not isinstance(timeout, (int, float)) or not 0 < timeout <= LONGEST:
+        raise SettingsError(f"{config}: timeout must be a number of seconds, up to {LONGEST}")
     scene = table.get("scene", SCENE)
     if not isinstance(scene, str):
         raise SettingsError(f"{config}: scene must be a path")
@@ -94,7 +95,7 @@ def read_case(folder: Path, base: Settings | None = None) -> Case:
 def words(table: dict[str, object], key: str, config: Path) -> tuple[str, ...]:
     """A list of strings."""
     value = table.get(key, [])
-    if isinstance(value, list) and all(isinstance(word, str) for word in value):
+    if isinstance(value, list) and all(isinstance(word, str) and "\0" not in word for word in value):
         return tuple(value)
     raise SettingsError(f"{config}: {key} must be a list of strings")
 

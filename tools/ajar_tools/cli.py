@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import shlex
 import sys
@@ -48,6 +49,10 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns the exit code. Wrong usage exits with 2, as argparse does."""
+    for stream in (sys.stdout, sys.stderr):
+        # What a terminal cannot show must not turn a verdict into a crash.
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     try:
         return run(sys.argv[1:] if arguments is None else list(arguments))
     except Exception:  # Python would end with 1, which is a verdict here.
@@ -68,7 +73,7 @@ def run(arguments: list[str]) -> int:
     except MemoryError:
         return refuse("there is not enough memory")
     except OSError as error:
-        return refuse(f"{error.filename} cannot be written: {error.strerror}")
+        return refuse(f"{error.filename or 'standard output'} cannot be written: {error.strerror}")
     return verdict.outcome.value
 
 
@@ -85,7 +90,9 @@ def tell(options: argparse.Namespace, verdict: Verdict) -> None:
     elif not (options.quiet and verdict.outcome is Outcome.PASS) and str(options.json) != "-":
         print(verdict.text())
     if options.github and verdict.outcome is not Outcome.PASS:
-        print(annotation(Path(options.reference), verdict.headline(), title(verdict)))
+        # GitHub reads both streams.
+        stream = sys.stderr if str(options.json) == "-" else sys.stdout
+        print(annotation(Path(options.reference), verdict.headline(), title(verdict)), file=stream)
 
 
 def with_flags(settings: Settings, options: argparse.Namespace) -> Settings:

@@ -15,6 +15,8 @@ from ajar_tools.verdict import GateResult, Outcome, Status, Verdict
 ENDING = ("structure", "finite")
 # A change of all light beyond which a comparison that could not see it is worth a warning.
 VAGUE = 0.2
+# One beyond which it has not judged.
+BLIND = 1.0
 
 
 def compare(new: str | Path, reference: str | Path, settings: Settings | None = None) -> Verdict:
@@ -61,6 +63,8 @@ def unjudged(statistics: GateResult, settings: Settings) -> str:
     """Why gate 4 leaves the judgement to FLIP; empty if it does not."""
     if statistics.status is Status.SKIP:
         return statistics.message
+    if statistics.status is Status.PASS and statistics.numbers.get("smallest_change", 0.0) > BLIND:
+        return "so much noise is declared that twice the light would not have been seen"
     excused = statistics.gate in {entry.gate for entry in settings.excused}
     return "its failure is excused" if excused and statistics.status is Status.FAIL else ""
 

@@ -58,9 +58,13 @@ class Picture:
     data_window: Window
     display_window: Window
     attributes: dict[str, Any] = field(default_factory=dict)
+    integers: dict[str, np.ndarray] = field(default_factory=dict)
+    """Channels of whole numbers as they are: those above 2²⁴ are not all floats."""
 
     def plane(self, channel: str) -> np.ndarray:
         """One channel, rows × columns."""
+        if channel in self.integers:
+            return self.integers[channel]
         return self.pixels[..., self.channels.index(channel)]
 
     @functools.cached_property
@@ -112,7 +116,9 @@ def read(path: str | Path, most_samples: int = MOST_SAMPLES) -> Picture:
         spec = source.spec()
         check_spec(path, source, spec, most_samples)
         pixels = source.read_image(0, 0, 0, spec.nchannels, oiio.FLOAT)
-        if pixels is None or source.has_error:
+        whole = [i for i, name in enumerate(spec.channelnames) if is_whole(spec, i)]
+        integers = {spec.channelnames[i]: source.read_image(0, 0, i, i + 1, oiio.UINT32) for i in whole}
+        if pixels is None or source.has_error or any(plane is None for plane in integers.values()):
             raise CannotCompareError(f"{path} is damaged: {complaint(source)}")
     finally:
         source.close()
@@ -124,11 +130,22 @@ def read(path: str | Path, most_samples: int = MOST_SAMPLES) -> Picture:
         data_window=Window(spec.x, spec.y, spec.width, spec.height),
         display_window=Window(spec.full_x, spec.full_y, spec.full_width, spec.full_height),
         attributes={item.name: item.value for item in spec.extra_attribs},
+        integers={name: np.asarray(plane).reshape(spec.height, spec.width) for name, plane in integers.items()},
     )
+
+
+def is_whole(spec: oiio.ImageSpec, channel: int) -> bool:
+    """Whether a channel holds whole numbers."""
+    return str(spec.channelformat(channel)).startswith("uint")
 
 
 def check_file(path: Path) -> None:
     """Refuses what is no OpenEXR file before any library looks at it."""
+    try:
+        str(path).encode("utf-8")
+    except UnicodeEncodeError as error:
+        name = str(path).encode("utf-8", "backslashreplace").decode("utf-8")
+        raise CannotCompareError(f"{name} has a name that is not UTF-8, which OpenImageIO cannot open") from error
     if not path.exists():
         raise CannotCompareError(f"{path} does not exist")
     if not path.is_file():
@@ -151,7 +168,7 @@ def check_spec(path: Path, source: oiio.ImageInput, spec: oiio.ImageSpec, most_s
     if int(spec.getattribute("oiio:subimages") or 1) > 1 or source.seek_subimage(1, 0):
         raise CannotCompareError(f"{path} has several parts; only single-part images can be compared")
     source.seek_subimage(0, 0)
-    integers = [name for i, name in enumerate(spec.channelnames) if str(spec.channelformat(i)).startswith("uint")]
+    integers = [name for i, name in enumerate(spec.channelnames) if is_whole(spec, i)]
     if colors := [name for name in ("R", "G", "B", "Y") if name in integers]:
         raise CannotCompareError(f"{path} has whole numbers in channel {colors[0]}, where light is a half or a float")
     if spec.depth > 1:

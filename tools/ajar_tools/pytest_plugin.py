@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from ajar_tools.artifacts import artifacts_of
-from ajar_tools.cases import CONFIG, SCENE, is_case, read_case
+from ajar_tools.cases import CONFIG, REFERENCE, SCENE, is_case, read_case
 from ajar_tools.image_item import ImageItem
 from ajar_tools.junit import DIFFERS, annotation
 from ajar_tools.settings import SettingsError, checked
@@ -59,9 +59,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
         return None
     if file_path.name == SCENE and (folder / CONFIG).exists():
         return None
-    bases = {parent.config.rootpath, Path(parent.config.invocation_params.dir)}
-    homes = {(base / name).resolve() for base in bases for name in parent.config.getini("ajar_images")}
-    if folder.parent.resolve() not in homes:
+    if folder.parent.resolve() not in homes(parent.config):
         return None
     return CaseFile.from_parent(parent, path=file_path)
 
@@ -78,8 +76,34 @@ class CaseFile(pytest.File):
         yield ImageItem.from_parent(self, name=case.name, case=case)
 
 
+def homes(config: pytest.Config) -> set[Path]:
+    """The folders whose subfolders are cases."""
+    bases = {config.rootpath, Path(config.invocation_params.dir)}
+    return {(base / name).resolve() for base in bases for name in config.getini("ajar_images")}
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Cases are cases whatever they are called, though pytest passes over folders called build or dist."""
+    return False if collection_path.parent.resolve() in homes(config) and is_case(collection_path) else None
+
+
+def check_orphans(config: pytest.Config) -> None:
+    """Refuses references that no case belongs to: what they guarded would be lost in silence.
+
+    Raises:
+        UsageError: names them.
+    """
+    references = [path for home in sorted(homes(config)) for path in sorted(home.glob(f"*/{REFERENCE}"))]
+    orphans = [str(path) for path in references if not is_case(path.parent)]
+    if orphans:
+        what = f"have neither {SCENE} nor {CONFIG} beside them"
+        raise pytest.UsageError(f"references without a case ({what}): {', '.join(orphans)}")
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Divides the suite's probability of a false alarm by its cases (Bonferroni)."""
+    check_orphans(config)
     cases = [item for item in items if isinstance(item, ImageItem)]
     for name, count in Counter(item.case.name for item in cases).items():
         if count > 1:
@@ -88,10 +112,16 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         item.prepare(artifacts_of(config), config.getoption("--ajar-alpha") / len(cases))
 
 
+def asks_for_cases(config: pytest.Config) -> bool:
+    """Whether what pytest was asked for has to do with folders of cases; else what an earlier run left stays."""
+    asked = [(config.invocation_params.dir / argument.split("::")[0]).resolve() for argument in config.args]
+    return any(path in (home, *home.parents) or home in path.parents for path in asked for home in homes(config))
+
+
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Removes the artifacts of the run before; with pytest-xdist, before the first of its processes starts."""
     config = session.config
-    if is_worker(config) or config.option.collectonly:
+    if is_worker(config) or config.option.collectonly or not asks_for_cases(config):
         return
     try:
         artifacts_of(config).clear()

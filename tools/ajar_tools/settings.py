@@ -106,6 +106,8 @@ def parse(path: Path) -> dict[str, Any]:
         return tomllib.loads(path.read_text("utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise SettingsError(f"{path}: {error}") from error
+    except RecursionError as error:
+        raise SettingsError(f"{path}: lists or tables lie too deep in each other") from error
 
 
 def from_dict(data: dict[str, Any], base: Settings, where: str, today: datetime.date) -> Settings:

@@ -33,6 +33,8 @@ from large import sheet
 
 # The fractional parts of its multiples spread evenly.
 GOLDEN = 0.618034
+# Columns of the image.
+WIDTH = 1280
 SCENE = """
 [[import]]
 file = "sheet.glb"
@@ -150,18 +152,18 @@ class Page:
         """Waits until a render is at work no more; returns when that was."""
         while True:
             it = self.message()
-            if it and it["type"] == "state" and it["phase"] != "rendering":
+            if is_state(it) and it["phase"] != "rendering":
                 return time.perf_counter()
 
     def message(self):
-        """A document, or None for a part of a frame."""
+        """A document, or the columns of the frame that a part is of."""
         first, length = self.stream.read(2)
         if length == 126:
             (length,) = struct.unpack(">H", self.stream.read(2))
         elif length == 127:
             (length,) = struct.unpack(">Q", self.stream.read(8))
         payload = self.stream.read(length)
-        return json.loads(payload) if first & 15 == 1 else None
+        return json.loads(payload) if first & 15 == 1 else struct.unpack_from("<I", payload)[0]
 
     def until_quiet(self, seconds):
         """Takes all that comes for so long, so that what comes later is new."""
@@ -170,16 +172,22 @@ class Page:
             self.message()
 
     def image(self):
-        """Waits for the first frame of an image that is newer than any before; returns its number and when that was."""
+        """Waits for the first frame, a coarse one, of an image that is newer than any before; returns when that was."""
         newest = getattr(self, "newest", 0)
         found = 0
         while True:
             it = self.message()
-            if it is None and found > newest:
+            # What is left of the image before has all columns.
+            if found > newest and isinstance(it, int) and it < WIDTH:
                 self.newest = found
-                return found, time.perf_counter()
-            if it and it["type"] == "state" and it["phase"] == "rendering":
+                return time.perf_counter()
+            if is_state(it) and it["phase"] == "rendering":
                 found = it["image"]
+
+
+def is_state(it):
+    """Whether a message tells what is going on."""
+    return isinstance(it, dict) and it["type"] == "state"
 
 
 def report(name, times):
@@ -224,7 +232,7 @@ def main():
             page = Page(next(it["page"] for it in said if "page" in it))
             # Who is not listened to waits when the pipe is full.
             threading.Thread(target=deque, args=[process.stderr, 0], daemon=True).start()
-            first = page.image()[1] - began
+            first = page.image() - began
             print(f"{len(triangles):,} triangles, {options.threads} threads, {options.saves} saves each")
             print(f"from the start to the first pixels {first:.2f} s")
             print("edit       median     95 %")
@@ -234,7 +242,7 @@ def main():
                     # Into the render, so that it has to be stopped, while the page reads along as browsers do.
                     page.until_quiet(1.5)
                     saved = save(i)
-                    times.append(page.image()[1] - saved)
+                    times.append(page.image() - saved)
                 report(name, times)
             stops, images = [], []
             for i in range(1, options.saves + 1):
@@ -242,7 +250,7 @@ def main():
                 setting = {"do": "set", "table": "material", "name": "sheet", "key": "metallic", "value": i / 100}
                 asked = page.ask(setting)
                 stops.append(page.stopped() - asked)
-                images.append(page.image()[1] - asked)
+                images.append(page.image() - asked)
             report("page", images)
             report("its stop", stops)
         finally:

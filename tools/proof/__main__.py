@@ -42,7 +42,7 @@ The synthetic images are as large as a reference may be. The renders are tiny an
 in noise; below each table stands what is not found every time. An image that claims twice its rounds has the right mean
 and is betrayed by scatter alone, which takes some thousand blocks. A change of light within what the image says of its
 own noise cannot be found; more pixels or rounds bring it out, as the last table shows. What changes albedo, normals or
-depth too is found whatever the noise.
+depth too, by more than 3 % of a block of pixels, is found whatever the noise.
 """
 
 

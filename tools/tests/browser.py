@@ -19,8 +19,8 @@ class NoBrowserError(Exception):
 
 
 @contextmanager
-def started() -> Iterator[Any]:
-    """A headless Chromium.
+def started(*flags: str) -> Iterator[Any]:
+    """A headless Chromium, with flags of its command line.
 
     Raises:
         NoBrowserError: there is none, or it does not start.
@@ -32,7 +32,7 @@ def started() -> Iterator[Any]:
     installed = next(filter(None, map(shutil.which, NAMES)), None)
     with sync_playwright() as playwright:
         try:
-            browser = playwright.chromium.launch(executable_path=installed, args=["--no-sandbox"])
+            browser = playwright.chromium.launch(executable_path=installed, args=["--no-sandbox", *flags])
         except Error as error:
             lines = [line for line in str(error).splitlines() if line.strip(" ╔║╚═")]
             advice = "Debian: apt-get install chromium; elsewhere: python -m playwright install --with-deps chromium"

@@ -7,19 +7,18 @@ import io
 import json
 import math
 import os
-import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
+from browser import NoBrowserError, started
 from watching import SCENE, Watch, studio
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+FLAGS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 PATIENCE = 60_000
 # Size of the image.
 WIDTH, HEIGHT = 320, 200
@@ -180,15 +179,14 @@ def free_port() -> int:
 @contextmanager
 def benched(folder: Path) -> Iterator[Bench]:
     """A bench in this folder; skips the test where there is no browser or no program."""
-    if CHROMIUM is None:
-        pytest.skip("there is no chromium (Debian: apt-get install chromium)")
     if "AJAR_BIN" not in os.environ:
         pytest.skip("AJAR_BIN names no program")
-    sync_api = pytest.importorskip("playwright.sync_api")
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+    with ExitStack() as stack:
+        try:
+            browser = stack.enter_context(started(*FLAGS))
+        except NoBrowserError as error:
+            pytest.skip(str(error))
         bench = Bench(folder, browser)
         yield bench
         assert bench.problems == []
-        browser.close()
-        assert bench.watch.end() == 0
+    assert bench.watch.end() == 0

@@ -12,6 +12,7 @@ from ajar_tools.statistics import from_rounds
 from ajar_tools.verdict import Status
 from synthetic import Recipe, gamma_noise, scene
 
+DISPLAY_P3 = (0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.329)
 RECIPE = Recipe(width=64, height=48, noise=0.3)
 
 
@@ -22,6 +23,8 @@ def passes(folder: Path, seeds: range, scale: float = 1.0) -> list[str]:
         noise = gamma_noise(np.random.default_rng(seed), RECIPE, 1 / RECIPE.noise**2)
         spec = oiio.ImageSpec(RECIPE.width, RECIPE.height, 3, oiio.FLOAT)
         image = oiio.ImageBuf(spec)
+        image.specmod().attribute("colorInteropID", "lin_p3d65_scene")
+        image.specmod().attribute("chromaticities", oiio.TypeDesc("float[8]"), DISPLAY_P3)
         image.set_pixels(spec.roi, np.float32(scale * scene(RECIPE.width, RECIPE.height) * noise))
         paths.append(str(folder / f"pass{seed}.exr"))
         assert image.write(paths[-1])
@@ -39,6 +42,8 @@ def test_it_stores_the_mean_and_the_spread_of_blocks(tmp_path: Path) -> None:
     rounds = np.stack([read(tmp_path / f"pass{seed}.exr").color for seed in range(5)])
     assert picture.color == pytest.approx(rounds.mean(axis=0), rel=1e-6)
     assert picture.statistics is not None
+    assert picture.attributes["colorInteropID"] == "lin_p3d65_scene"
+    assert picture.attributes["chromaticities"] == pytest.approx(DISPLAY_P3)
     expected = from_rounds(rounds)
     assert picture.statistics.rounds == 5
     for side, variance in expected.variances.items():

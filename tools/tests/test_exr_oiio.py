@@ -67,6 +67,18 @@ def test_oiiotool_reads_every_kind_and_finds_every_pixel_finite(kind: str, tmp_p
     read(tmp_path / "out.exr")
 
 
+def test_what_is_merged_is_read_too(tmp_path: Path) -> None:
+    saved = [tmp_path / f"{i}.ckpt" for i in range(2)]
+    for i, path in enumerate(saved):
+        render(tmp_path / "part.exr", "--shard", f"{i}/2", "--rounds", "4", "--checkpoint", str(path))
+    merged = tmp_path / "merged.exr"
+    subprocess.run([os.environ["AJAR_BIN"], "merge", *saved, "-o", merged], check=True, capture_output=True)
+    image = oiio.ImageBuf(str(merged))
+    assert image.spec().full_width == 32
+    assert np.isfinite(image.get_pixels(oiio.FLOAT)).all()
+    assert read(merged).attributes["ajar:rounds"] == 4
+
+
 def test_beauty_comes_first_then_named_layers(spec: oiio.ImageSpec) -> None:
     names = list(spec.channelnames)
     assert names[:4] == ["R", "G", "B", "A"]

@@ -272,8 +272,93 @@ def test_noise_that_hides_everything_is_a_warning(reference: Path, tmp_path: Pat
     black.variances = {side: 1e6 * variance for side, variance in black.variances.items()}
     verdict = compare(black.write(tmp_path / "new.exr"), reference)
     assert gates(verdict)["statistics"] is Status.PASS
-    assert "so much noise is declared that only" in verdict.text()
     assert verdict.as_dict()["warnings"]
+    # What would have let twice the light pass has not judged.
+    assert gates(verdict)["flip"] is Status.FAIL
+    assert "so much noise is declared that twice the light" in verdict.text()
+
+
+def silent(seed: int, change: Callable[[np.ndarray], np.ndarray], rows: int = 72) -> File:
+    """An image of little noise that declares none."""
+    image = file(Recipe(height=rows, noise=0.01), seed=seed)
+    image.variances = {}
+    image.pixels[..., :3] = change(image.pixels[..., :3])
+    return image
+
+
+@pytest.mark.parametrize("factor", [10, 100, 1e4])
+def test_bright_images_are_seen_without_statistics(factor: float, tmp_path: Path) -> None:
+    bright = silent(1, lambda image: factor * image).write(tmp_path / "reference.exr")
+    same = silent(2, lambda image: factor * image).write(tmp_path / "same.exr")
+    assert compare(same, bright).outcome is Outcome.PASS
+    for change in (lambda image: 2 * factor * image, lambda image: factor * image * [3, 1, 1]):
+        other = silent(2, change).write(tmp_path / "other.exr")
+        assert gates(compare(other, bright))["flip"] is Status.FAIL
+
+
+def test_negative_light_of_other_renderers_is_no_picture(tmp_path: Path) -> None:
+    black = silent(1, np.zeros_like).write(tmp_path / "reference.exr")
+    negative = silent(1, lambda image: -50 * image).write(tmp_path / "new.exr")
+    verdict = compare(negative, black, Settings(other_renderer=True))
+    assert gates(verdict)["finite"] is Status.FAIL
+
+
+@pytest.mark.parametrize("size", [(3, 200_000), (400_000, 1), (1, 400_000)])
+def test_the_edges_of_averaged_images_count(size: tuple[int, int], tmp_path: Path) -> None:
+    right = silent(1, lambda image: image)
+    right.pixels = np.ones((*size, 4), np.float32)
+    reference = right.write(tmp_path / "reference.exr")
+    assert compare(right.write(tmp_path / "same.exr"), reference).outcome is Outcome.PASS
+    right.pixels[-1:, :, :3] = right.pixels[:, -1:, :3] = 0
+    verdict = compare(right.write(tmp_path / "new.exr"), reference)
+    assert verdict.flip is not None
+    assert verdict.flip.errors[-1, -1] > 0.5
+
+
+def test_statistics_that_are_lost_fail(reference: Path, tmp_path: Path) -> None:
+    lost = file(seed=7, rounds=64)
+    lost.variances = {}
+    verdict = compare(lost.write(tmp_path / "new.exr"), reference)
+    assert gates(verdict)["structure"] is Status.FAIL
+    assert "does not declare its noise" in verdict.text()
+
+
+def test_numbers_beyond_floats_are_told_apart(tmp_path: Path) -> None:
+    def numbered(name: str, number: int) -> Path:
+        spec = oiio.ImageSpec(8, 8, 4, oiio.FLOAT)
+        spec.channelnames = ("R", "G", "B", "id.I")
+        spec.channelformats = (oiio.FLOAT, oiio.FLOAT, oiio.FLOAT, oiio.UINT32)
+        pixels = np.zeros((8, 8, 4), np.uint32)
+        pixels[..., 3] = number
+        output = oiio.ImageOutput.create(str(tmp_path / name))
+        assert output.open(str(tmp_path / name), spec)
+        assert output.write_image(pixels), output.geterror()
+        output.close()
+        return tmp_path / name
+
+    right = numbered("reference.exr", 0x12345678)
+    assert read(right).plane("id.I")[0, 0] == 0x12345678
+    assert gates(compare(numbered("same.exr", 0x12345678), right))["exact"] is Status.PASS
+    verdict = compare(numbered("new.exr", 0x1234567F), right)
+    assert gates(verdict)["numbers"] is Status.FAIL
+
+
+def test_layers_that_are_brighter_as_a_whole_are_found(tmp_path: Path) -> None:
+    # Where neighbours differ, one value may be any that lies between them, but not all may be larger.
+    checks = 0.45 + 0.05 * (-1.0) ** np.add.outer(np.arange(72), np.arange(96))
+
+    def textured(seed: int, gain: float) -> File:
+        image = file(seed=seed)
+        layer = gain * checks * (1 + 0.001 * np.random.default_rng(seed).normal(size=checks.shape))
+        image.pixels = np.concatenate([image.pixels, layer[..., None]], axis=2)
+        image.channels = (*image.channels, "albedo.R")
+        return image
+
+    right = textured(1, 1).write(tmp_path / "reference.exr")
+    assert compare(textured(2, 1).write(tmp_path / "same.exr"), right).outcome is Outcome.PASS
+    verdict = compare(textured(2, 1.12).write(tmp_path / "new.exr"), right)
+    assert gates(verdict)["numbers"] is Status.FAIL
+    assert "the mean of channel albedo.R differs" in verdict.text()
 
 
 def excusing(*gates: str) -> Settings:

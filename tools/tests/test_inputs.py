@@ -1,5 +1,7 @@
 """What cannot be compared is exit code 2 and a sentence; never a pass, never a trace."""
 
+import json
+import os
 import subprocess
 import sys
 import tomllib
@@ -214,6 +216,27 @@ def test_random_damage_never_passes_unnoticed(good: Path, tmp_path: Path) -> Non
         verdict = compare(path, good)
         if verdict.outcome is Outcome.PASS:
             assert np.abs(read(path).pixels - clean).mean() < 1e-3
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of files are text here")
+def test_names_that_are_no_text(good: Path) -> None:
+    name = good.with_name("\udcff.exr")
+    name.write_bytes(good.read_bytes())
+    assert "has a name that is not UTF-8" in refused(name, good)
+
+
+def test_terminals_that_cannot_show_a_verdict(good: Path) -> None:
+    command = [sys.executable, "-m", "ajar_tools", "compare", good, good]
+    done = subprocess.run(command, capture_output=True, env={**os.environ, "PYTHONIOENCODING": "ascii"})
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_verdict_as_json_stands_alone(good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    other = file(seed=1, scale=2).write(tmp_path / "other.exr")
+    assert cli.main([str(other), str(good), "--json", "-", "--github"]) == 1
+    said = capsys.readouterr()
+    assert json.loads(said.out)["outcome"] == "fail"
+    assert said.err.startswith("::error")
 
 
 def test_the_version_is_that_of_ajar(capsys: pytest.CaptureFixture[str]) -> None:

@@ -320,3 +320,29 @@ def test_a_folder_of_somebody_else_is_not_emptied(project: pytest.Pytester) -> N
     result = run(project)
     assert result.ret != 0
     assert (folder / "thesis.tex").exists()
+
+
+@pytest.mark.parametrize("name", ["build", "dist", ".hidden"])
+def test_cases_are_cases_whatever_they_are_called(name: str, project: pytest.Pytester) -> None:
+    write_scene(project.path, name, seed=2)
+    result = run(project, "tests/images")
+    assert result.ret == 1
+    result.stdout.fnmatch_lines([f"*{name} has no reference image*"])
+
+
+def test_references_without_a_case_are_refused(project: pytest.Pytester) -> None:
+    run(project, "--ajar-update")
+    (project.path / "tests/images/door/scene.toml").rename(project.path / "tests/images/door/other.toml")
+    write_scene(project.path, "window", seed=2)
+    result = run(project, "tests/images")
+    assert result.ret != 0
+    result.stderr.fnmatch_lines(["*references without a case*door*reference.exr*"])
+
+
+def test_artifacts_stay_where_no_case_is_asked_for(project: pytest.Pytester) -> None:
+    run(project, "--ajar-update")
+    kept = project.path / "ajar-artifacts" / "door" / "new.exr"
+    assert kept.is_file()
+    project.makepyfile(test_unit="def test_nothing(): pass")
+    assert run(project, "test_unit.py").ret == 0
+    assert kept.is_file()

@@ -10,7 +10,7 @@ use std::{
 
 use ajar_scene::{Cause, Diagnostic};
 
-use self::program::PROGRAM;
+use self::program::{PROGRAM, SPOKEN};
 use super::Exit;
 
 #[derive(Debug, clap::Args)]
@@ -30,10 +30,14 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Exit {
     match compare(&args.arguments) {
-        Ok(status) => match status.code() {
+        Ok(status) => match status.code().map(|code| code - i32::from(SPOKEN)) {
             Some(0) => Exit::Ok,
             Some(1) => Exit::Failed,
-            _ => Exit::Usage,
+            Some(2) => Exit::Usage,
+            _ => {
+                eprintln!("error: its Python ended without a verdict ({status})");
+                Exit::Usage
+            }
         },
         Err(problem) => {
             eprintln!("{problem}");

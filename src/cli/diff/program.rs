@@ -5,11 +5,15 @@ use ajar_importers::{
     python::{Environment, Program},
 };
 
+/// What an exit code begins at that is a verdict.
+pub(super) const SPOKEN: u8 = 64;
+
 /// The package, without what only pytest needs, and what it runs on.
 pub(super) const PROGRAM: Program = Program {
     name: "ajar diff",
     package: "ajar_tools",
     start: "cli",
+    codes: SPOKEN,
     files: package_files![
         "../../../tools/ajar_tools":
         "__init__.py",

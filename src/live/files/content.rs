@@ -49,6 +49,8 @@ fn read(path: &Path) -> Option<Content> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Stamp {
     modified: Option<SystemTime>,
+    /// When it got its name, content or owner: files that are moved keep the time of their content.
+    placed: Option<SystemTime>,
     bytes: u64,
     number: u64,
 }
@@ -57,12 +59,13 @@ impl Stamp {
     /// That of a file that is there.
     pub fn of(path: &Path) -> Option<Self> {
         let data = path.metadata().ok().filter(Metadata::is_file)?;
-        Some(Self { modified: data.modified().ok(), bytes: data.len(), number: number(&data) })
+        let (placed, number) = entry(&data);
+        Some(Self { modified: data.modified().ok(), placed, bytes: data.len(), number })
     }
 
-    /// Whether it may have been written since then.
+    /// Whether it may have been written, or put there, since then.
     pub fn is_since(&self, time: SystemTime) -> bool {
-        self.modified.is_some_and(|modified| modified + CLOCK > time)
+        [self.modified, self.placed].into_iter().flatten().any(|then| then + CLOCK > time)
     }
 
     /// Whether another change now could leave the same stamp.
@@ -71,12 +74,17 @@ impl Stamp {
     }
 }
 
+/// When the entry of the file changed last, and its number.
 #[cfg(unix)]
-fn number(data: &Metadata) -> u64 {
-    std::os::unix::fs::MetadataExt::ino(data)
+fn entry(data: &Metadata) -> (Option<SystemTime>, u64) {
+    use std::os::unix::fs::MetadataExt;
+    let [seconds, nanos] = [data.ctime(), data.ctime_nsec()].map(|n| u64::try_from(n).unwrap_or(0));
+    let changed =
+        SystemTime::UNIX_EPOCH.checked_add(Duration::from_secs(seconds) + Duration::from_nanos(nanos));
+    (changed, data.ino())
 }
 
 #[cfg(not(unix))]
-fn number(_data: &Metadata) -> u64 {
-    0
+fn entry(_data: &Metadata) -> (Option<SystemTime>, u64) {
+    (None, 0)
 }

@@ -35,7 +35,8 @@ impl Folders {
 
     /// Watches the folders of these files and no others. Returns whether there is a new one.
     pub fn watch(&mut self, files: &BTreeSet<PathBuf>) -> bool {
-        let wanted: BTreeSet<PathBuf> = files.iter().flat_map(|file| above(file)).collect();
+        let wanted: BTreeSet<PathBuf> =
+            files.iter().flat_map(|file| above(file)).map(Path::to_owned).collect();
         let Some(watcher) = &mut self.watcher else { return false };
         let mut is_new = false;
         self.folders.retain(|folder, _| {
@@ -72,13 +73,13 @@ impl Folders {
 
     /// Whether changes of the file will be told.
     pub fn tells_of(&self, file: &Path) -> bool {
-        above(file).iter().all(|folder| self.folders.get(folder) == Some(&true))
+        let links = file.ancestors().filter(|path| path.is_symlink()).filter_map(Path::parent);
+        above(file).take(2).chain(links).all(|folder| self.folders.get(folder) == Some(&true))
     }
 }
 
-/// The nearest folder above that exists, in which the file or a folder on the way to it comes to be, and the one above it,
-/// which sees that folder go.
-fn above(file: &Path) -> Vec<PathBuf> {
-    let existing = file.ancestors().skip(1).filter(|folder| folder.is_dir());
-    existing.take(2).map(Path::to_owned).collect()
+/// All folders above that exist, the nearest first: in that one the file or a folder on the way to it comes to be, and the
+/// others see the folders on the way go, or links lead elsewhere.
+fn above(file: &Path) -> impl Iterator<Item = &Path> {
+    file.ancestors().skip(1).filter(|folder| folder.is_dir())
 }

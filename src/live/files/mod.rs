@@ -37,7 +37,7 @@ const POLL: Duration = Duration::from_millis(500);
 pub struct Watcher(Sender<Message>);
 
 enum Message {
-    /// Watch these, of which those that are new and written since then are changed already.
+    /// Watch these, of which those that are written since then are changed already.
     Watch(BTreeSet<PathBuf>, SystemTime),
     Event(Event),
     /// The watcher is gone.
@@ -60,8 +60,8 @@ impl Watcher {
         Ok(Self(sender))
     }
 
-    /// Watches these files and no others, whether they exist or not. Those that were not watched and are written after
-    /// `since` count as changed.
+    /// Watches these files and no others, whether they exist or not. Those that are written or put there after `since`
+    /// count as changed, whatever they hold: who has read them meanwhile may have read anything.
     pub fn watch(&self, files: BTreeSet<PathBuf>, since: SystemTime) {
         // The thread ends with this watcher only.
         let _ = self.0.send(Message::Watch(files, since));
@@ -127,6 +127,12 @@ impl State {
 
     fn watch(&mut self, files: BTreeSet<PathBuf>, since: SystemTime) {
         self.files.retain(|path, _| files.contains(path));
+        for (path, file) in &mut self.files {
+            if Stamp::of(path).is_some_and(|stamp| stamp.is_since(since)) {
+                file.content = Content::Unknown;
+                self.pending.add(path.clone());
+            }
+        }
         let new: Vec<_> = files.into_iter().filter(|path| !self.files.contains_key(path)).collect();
         let wanted =
             self.paths().into_iter().chain(new.iter().cloned()).chain(new.iter().map(|path| real(path)));

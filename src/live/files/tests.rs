@@ -151,10 +151,50 @@ fn what_is_no_longer_watched_is_no_change() {
     let bench = Bench::new(false, &["a", "b"], &[]);
     bench.write("c", "before");
     bench.watcher.watch(["b", "c"].map(|name| bench.path(name)).into(), SystemTime::UNIX_EPOCH);
-    bench.hears(&["c"]);
+    bench.hears(&["b", "c"]);
     bench.write("a", "after");
     bench.write("b", "after");
     bench.hears(&["b"]);
+}
+
+#[test]
+fn what_took_a_place_since_then_is_a_change_however_old_it_is() {
+    let bench = Bench::new(false, &["a"], &[]);
+    thread::sleep(PAUSE);
+    let since = SystemTime::now();
+    bench.write("old", "after");
+    let file = fs::File::options().write(true).open(bench.path("old")).unwrap();
+    file.set_modified(since - Duration::from_secs(3600)).unwrap();
+    thread::sleep(PAUSE);
+    bench.rename("old", "b");
+    bench.watcher.watch(["a", "b"].map(|name| bench.path(name)).into(), since);
+    bench.hears(&["b"]);
+}
+
+#[test]
+fn what_was_written_while_it_was_read_is_a_change_though_it_holds_the_same() {
+    let bench = Bench::new(false, &["a", "b"], &[]);
+    thread::sleep(PAUSE);
+    let since = SystemTime::now();
+    thread::sleep(PAUSE);
+    bench.write("a", "before");
+    bench.watcher.watch(["a", "b"].map(|name| bench.path(name)).into(), since);
+    bench.hears(&["a"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_far_above_may_lead_elsewhere() {
+    let bench = Bench::new(false, &["v1/deep/down/a", "v2/deep/down/a"], &["latest/deep/down/a"]);
+    std::os::unix::fs::symlink("v1", bench.path("latest")).unwrap();
+    bench.hears(&["latest/deep/down/a"]);
+    bench.write("v2/deep/down/a", "after");
+    bench.hears(&["v2/deep/down/a"]);
+    std::os::unix::fs::symlink("v2", bench.path("new")).unwrap();
+    bench.rename("new", "latest");
+    bench.hears(&["latest/deep/down/a"]);
+    bench.rename("v2", "v3");
+    bench.hears(&["latest/deep/down/a", "v2/deep/down/a"]);
 }
 
 #[cfg(unix)]

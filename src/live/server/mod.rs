@@ -100,12 +100,16 @@ pub struct Options {
     pub token: String,
     /// Most pages at once.
     pub pages: usize,
-    /// How long a connection may take to say what it wants, and a page to read a message; then it is closed.
+    /// How long a connection may take to say what it wants, and a page to read a message; then it is closed. Six times as
+    /// long one lives that is no page's.
     pub patience: Duration,
 }
 
 /// Most connections at once that are not those of pages: each takes a descriptor, of which others need some. More wait.
 const CONNECTIONS: usize = 128;
+
+/// Patiences after which a connection ends that became no page: who reads an image slowly must not hold its place for ever.
+const READING: u32 = 6;
 
 /// A server at work; it ends when dropped.
 #[derive(Debug)]
@@ -200,7 +204,7 @@ async fn serve(listener: TcpListener, room: Arc<Room>) -> io::Result<()> {
         let connection = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
         tokio::spawn(async move {
             // One that breaks off is no loss. It ends here where it becomes a WebSocket.
-            let _ = connection.await;
+            let _ = tokio::time::timeout(READING * patience, connection).await;
             drop(place);
         });
     }

@@ -28,7 +28,10 @@ impl Program for Echo {
     }
 
     fn image(&self, name: &str) -> Option<Arc<Frame>> {
-        (name == "1").then(|| Arc::new(Frame::new(1, 1, &[[1.0, 0.5, 0.25]], None)))
+        // The second is far more than the system keeps for one who does not read.
+        let sides = [("1", 1), ("2", 2048)];
+        let (_, side) = sides.into_iter().find(|(known, _)| *known == name)?;
+        Some(Arc::new(Frame::new(side, side, &[[1.0, 0.5, 0.25]], None)))
     }
 }
 

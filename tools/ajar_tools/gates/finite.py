@@ -1,4 +1,7 @@
-"""Gate 2: every pixel is a number, and light is not negative. Both images are checked."""
+"""Gate 2: every pixel is a number, and light is not negative. Both images are checked.
+
+Reconstruction filters of other renderers have negative lobes: of these, a trace beside the light is let through.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,9 @@ import numpy as np
 from ajar_tools.picture import Picture
 from ajar_tools.settings import Settings
 from ajar_tools.verdict import GateResult, Status
+
+# Negative light, over all light, that filters may leave behind.
+LOBES = 0.01
 
 
 def check(new: Picture, reference: Picture, settings: Settings) -> GateResult:
@@ -26,10 +32,15 @@ def problem(picture: Picture, settings: Settings) -> str:
     finite = np.isfinite(pixels)
     if not finite.all():
         return describe(picture, ~finite, names, "not finite")
-    # Reconstruction filters of other renderers have negative lobes; the other gates judge what they do.
-    if float(picture.color.min()) < 0 and not settings.other_renderer:
+    if float(picture.color.min()) < 0 and not (settings.other_renderer and is_trace(picture.color)):
         return describe(picture, picture.color < 0, colors, "negative")
     return ""
+
+
+def is_trace(color: np.ndarray) -> bool:
+    """Whether negative values are a small part of all."""
+    negative = -np.minimum(color, 0).sum(dtype=np.float64)
+    return bool(negative <= LOBES * np.abs(color).sum(dtype=np.float64))
 
 
 def describe(picture: Picture, bad: np.ndarray, names: list[str], what: str) -> str:

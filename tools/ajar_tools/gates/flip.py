@@ -1,8 +1,9 @@
 """Gate 6: what a person would see, by ꟻLIP (Andersson et al. 2020; for high dynamic range, 2021).
 
-The exposures follow from a fixed luminance, not from each reference, so that numbers can be compared between images.
-Images of more than 0.3 megapixels are averaged over squares first, and the viewing distance grows accordingly: the
-same picture at the same size, without its finest detail. That is what makes the gate affordable.
+The exposures follow from a fixed luminance, not from each reference, so that numbers can be compared between images;
+only where an image is brighter there are more of them, for what is white at all exposures looks the same. Images of
+more than 0.3 megapixels are averaged over squares first, and the viewing distance grows accordingly: the same picture
+at the same size, without its finest detail. That is what makes the gate affordable.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ MOST_PIXELS = 300_000
 PIXELS_PER_DEGREE = 67.02064
 # A grey that every picture has, the other end of the exposures.
 MEDIAN_LUMINANCE = 0.18
+# Light beyond this is white at all exposures.
+MOST_LUMINANCE = 1e6
 DEFAULT_MEAN = 0.05
 DEFAULT_P95 = 0.2
 
@@ -72,18 +75,18 @@ def flip_map(new: Picture, reference: Picture, settings: Settings) -> FlipMap:
     """The errors of every pixel, or square of pixels."""
     height, width = reference.pixels.shape[:2]
     factor = 1
-    while (width // factor) * (height // factor) > MOST_PIXELS:
+    while -(-width // factor) * -(-height // factor) > MOST_PIXELS:
         factor += 1
     theirs, ours = (shrunk(picture.color, factor) for picture in (reference, new))
-    exposures = exposures_for(settings.max_luminance, MEDIAN_LUMINANCE)
+    brightest = min(max(float(image.mean(axis=2).max()) for image in (theirs, ours)), MOST_LUMINANCE)
+    exposures = exposures_for(max(settings.max_luminance, brightest), MEDIAN_LUMINANCE)
     return FlipMap(hdr_flip(theirs, ours, exposures, PIXELS_PER_DEGREE / factor), factor)
 
 
 def shrunk(color: np.ndarray, factor: int) -> np.ndarray:
-    """RGB averaged over squares; rows and columns that fill no square are left out."""
+    """RGB averaged over squares, which may be smaller at the right and lower edge."""
     if color.shape[2] == 1:
         color = np.repeat(color, 3, axis=2)
     if factor > 1:
-        height, width = (extent - extent % factor for extent in color.shape[:2])
-        color = block_means(color[:height, :width], factor)
+        color = block_means(color, factor)
     return np.ascontiguousarray(np.maximum(color, 0), np.float32)

@@ -1,7 +1,8 @@
 """Layers besides colour and its variance: first hits, almost without noise.
 
 Coverage, albedo and normals are averages over a pixel, sampled at a few points: at edges they depend on where these
-lie. So a value counts as another one only where it is beyond what the pixels around it hold in the other image.
+lie. So a value counts as another one only where it is beyond what the pixels around it hold in the other image. What
+that lets through scatters to both sides: the mean of a block of pixels stays as it is, and is judged too.
 """
 
 from __future__ import annotations
@@ -12,11 +13,16 @@ import numpy as np
 
 from ajar_tools.picture import Picture
 from ajar_tools.settings import Settings
+from ajar_tools.statistics import block_means, block_sizes
 
 # Differences up to this, relative to the larger value, are none; values below the least count as the least.
 TOLERANCE, LEAST = 0.01, 0.01
 # What a few samples may miss of an edge: of the range of the 3×3 pixels around, and of the largest value there.
 OF_RANGE, OF_VALUE = 0.5, 0.125
+# Side of the blocks whose means are judged, and fewest pixels of one.
+SIDE, FEWEST = 64, 256
+# What their means may differ by: this part of the values' mean size, and so many standard errors of the difference.
+OF_MEAN, DEVIATIONS = 0.03, 4
 
 
 def layer_problems(new: Picture, reference: Picture, settings: Settings) -> list[str]:
@@ -35,11 +41,17 @@ def layer_problems(new: Picture, reference: Picture, settings: Settings) -> list
     # numpy works without the interpreter's lock.
     with ThreadPoolExecutor() as pool:
         fractions = list(pool.map(fraction, names))
+        others = list(pool.map(lambda name: other_blocks(new.plane(name), reference.plane(name)), names))
     allowed = 100 * settings.layer_pixels
-    return [
+    problems = [
         f"channel {name} differs in {100 * part:.3g} % of the pixels, {allowed:g} % may"
         for name, part in zip(names, fractions, strict=True)
         if part > settings.layer_pixels
+    ]
+    return problems or [
+        f"the mean of channel {name} differs in {count} blocks of {SIDE}×{SIDE} pixels"
+        for name, count in zip(names, others, strict=True)
+        if count
     ]
 
 
@@ -52,6 +64,18 @@ def differing(a: np.ndarray, b: np.ndarray, enough: float) -> float:
     others = tolerance[places]
     beyond = beyond_neighbours(a, b, places, others) | beyond_neighbours(b, a, places, others)
     return float(beyond.sum()) / a.size
+
+
+def other_blocks(a: np.ndarray, b: np.ndarray) -> int:
+    """The number of blocks whose means differ by more than edges explain."""
+    a, b = (plane.astype(np.float64)[..., None] for plane in (a, b))
+    difference = a - b
+    mean, square = (block_means(values, SIDE) for values in (difference, difference * difference))
+    size = block_means(np.maximum(np.abs(a), np.abs(b)), SIDE)
+    pixels = block_sizes((a.shape[1], a.shape[0]), SIDE)[..., None]
+    error = np.sqrt(np.maximum(square - mean * mean, 0) / pixels)
+    differs = np.abs(mean) > OF_MEAN * np.maximum(size, LEAST) + DEVIATIONS * error
+    return int((differs & (pixels >= FEWEST)).sum())
 
 
 def whole(plane: np.ndarray) -> bool:

@@ -90,6 +90,9 @@ def metadata_problems(new: Picture, reference: Picture, settings: Settings) -> l
     for picture in (new, reference):
         if picture.attributes.get("ajar:complete") == 0:
             problems.append(f"{picture.path} is an interrupted render (ajar:complete is 0)")
+    # Without it statistics cannot judge, and what is left finds less.
+    if reference.statistics is not None and new.statistics is None and not settings.other_renderer:
+        problems.append(f"{new.path} does not declare its noise, as the reference does (ajar:blockVariance8 and so on)")
     for name in (*COLOR_SPACE, *settings.require):
         a, b = new.attributes.get(name), reference.attributes.get(name)
         if name in settings.require and (a is None or b is None):

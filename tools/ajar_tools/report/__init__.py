@@ -84,7 +84,7 @@ def images(verdict: Verdict, settings: Settings) -> dict[str, Any]:
     new, reference = verdict.pictures
     height, width = reference.pixels.shape[:2]
     factor = 1
-    while (width // factor) * (height // factor) > MOST_PIXELS:
+    while -(-width // factor) * -(-height // factor) > MOST_PIXELS:
         factor += 1
     # numpy and zlib work without the interpreter's lock.
     with ThreadPoolExecutor() as pool:

@@ -37,6 +37,19 @@ fn connections_that_say_nothing_are_closed_and_only_so_many_are_open() {
 }
 
 #[test]
+fn who_does_not_read_an_image_does_not_keep_its_place() {
+    let bench = Bench::new(4);
+    let path = format!("/{TOKEN}/image/2");
+    let mut deaf = bench.connect();
+    write!(deaf, "GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n\r\n", bench.port()).unwrap();
+    thread::sleep((READING + 1) * PATIENCE);
+    let mut heard = Vec::new();
+    let end = deaf.read_to_end(&mut heard);
+    assert!(end.is_err() || heard.len() < 2048 * 2048 * 6, "all of it, though late");
+    assert_eq!(bench.status(&path), 200);
+}
+
+#[test]
 fn a_page_that_does_not_read_holds_nobody_up() {
     let bench = Bench::new(4);
     let mut deaf = bench.open();
