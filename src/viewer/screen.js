@@ -86,17 +86,17 @@ export class Screen {
     this.draw();
   }
 
-  // A pixel for a pixel of the screen.
+  // A pixel for a pixel of the screen; what is in the middle stays there.
   actual() {
-    this.#zoomTo(this.canvas.clientWidth / 2, this.canvas.clientHeight / 2, 1 / devicePixelRatio);
+    this.#isFitted = false;
+    this.view.zoom = 1 / devicePixelRatio;
+    this.draw();
   }
 
+  // What is at that point of the canvas stays there.
   zoomAt(x, y, factor) {
-    this.#zoomTo(x, y, Math.min(Math.max(this.view.zoom * factor, 0.05), 64));
-  }
-
-  #zoomTo(x, y, zoom) {
     const [px, py] = this.pixelAt(x, y);
+    const zoom = Math.min(Math.max(this.view.zoom * factor, 0.05), 64);
     this.#isFitted = false;
     this.view.zoom = zoom;
     this.view.center = [px - (x - this.canvas.clientWidth / 2) / zoom, py - (y - this.canvas.clientHeight / 2) / zoom];
