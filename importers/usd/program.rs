@@ -9,8 +9,8 @@ use crate::{
 pub(super) const PROGRAM: Program = Program {
     name: "the USD importer",
     package: "ajar_import_usd",
-    codes: 0,
     start: "main",
+    codes: 0,
     files: package_files![
         "ajar_import_usd":
         "__init__.py",

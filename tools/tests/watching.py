@@ -7,6 +7,7 @@ import signal
 import struct
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -61,8 +62,8 @@ def studio(folder: Path) -> Path:
     """Writes a scene; returns its file."""
     for name, text in {"box.obj": BOX, "box.mtl": material("0.6 0.6 0.6"), "scene.toml": SCENE}.items():
         (folder / name).write_text(text)
-        # What is written just before the program reads it may have changed meanwhile, and is rendered twice.
-        os.utime(folder / name, (1e9, 1e9))
+    # What is written just before the program reads it may have changed meanwhile, and is rendered twice.
+    time.sleep(0.1)
     return folder / "scene.toml"
 
 

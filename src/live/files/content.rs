@@ -65,7 +65,7 @@ impl Stamp {
 
     /// Whether it may have been written, or put there, since then.
     pub fn is_since(&self, time: SystemTime) -> bool {
-        [self.modified, self.placed].into_iter().flatten().any(|then| then + CLOCK > time)
+        [self.modified, self.placed].into_iter().flatten().any(|then| then > time - CLOCK)
     }
 
     /// Whether another change now could leave the same stamp.

@@ -73,14 +73,20 @@ def check(found: FlipMap, settings: Settings, alone: str = "") -> GateResult:
 
 def flip_map(new: Picture, reference: Picture, settings: Settings) -> FlipMap:
     """The errors of every pixel, or square of pixels."""
-    height, width = reference.pixels.shape[:2]
-    factor = 1
-    while -(-width // factor) * -(-height // factor) > MOST_PIXELS:
-        factor += 1
+    factor = factor_for(reference, MOST_PIXELS)
     theirs, ours = (shrunk(picture.color, factor) for picture in (reference, new))
     brightest = min(max(float(image.mean(axis=2).max()) for image in (theirs, ours)), MOST_LUMINANCE)
     exposures = exposures_for(max(settings.max_luminance, brightest), MEDIAN_LUMINANCE)
     return FlipMap(hdr_flip(theirs, ours, exposures, PIXELS_PER_DEGREE / factor), factor)
+
+
+def factor_for(picture: Picture, most: int) -> int:
+    """The least side of the squares over which to average an image, so that no more than `most` are left."""
+    height, width = picture.pixels.shape[:2]
+    factor = 1
+    while -(-width // factor) * -(-height // factor) > most:
+        factor += 1
+    return factor
 
 
 def shrunk(color: np.ndarray, factor: int) -> np.ndarray:

@@ -26,33 +26,26 @@ OF_MEAN, DEVIATIONS = 0.03, 4
 
 
 def layer_problems(new: Picture, reference: Picture, settings: Settings) -> list[str]:
-    """Layers in which more pixels differ than may."""
+    """What is wrong with each layer that is."""
     colors = set(new.color_channels)
     names = [n for n in new.channels if n not in colors and not n.startswith("variance.") and n in reference.channels]
+    allowed = settings.layer_pixels
 
-    def fraction(name: str) -> float:
+    def problem(name: str) -> str:
         # Channels lie interleaved: one that is looked at often is taken out first.
         a, b = (np.ascontiguousarray(picture.plane(name)) for picture in (new, reference))
         # Numbers of objects: near ones have nothing in common.
-        if new.types[name].startswith("uint") or (whole(a) and whole(b)):
-            return float(np.not_equal(a, b).mean())
-        return differing(a, b, settings.layer_pixels)
+        numbers = new.types[name].startswith("uint") or (whole(a) and whole(b))
+        part = float(np.not_equal(a, b).mean()) if numbers else differing(a, b, allowed)
+        if part > allowed:
+            return f"channel {name} differs in {100 * part:.3g} % of the pixels, {100 * allowed:g} % may"
+        if not numbers and (count := other_blocks(a, b)):
+            return f"the mean of channel {name} differs in {count} blocks of {SIDE}×{SIDE} pixels"
+        return ""
 
     # numpy works without the interpreter's lock.
     with ThreadPoolExecutor() as pool:
-        fractions = list(pool.map(fraction, names))
-        others = list(pool.map(lambda name: other_blocks(new.plane(name), reference.plane(name)), names))
-    allowed = 100 * settings.layer_pixels
-    problems = [
-        f"channel {name} differs in {100 * part:.3g} % of the pixels, {allowed:g} % may"
-        for name, part in zip(names, fractions, strict=True)
-        if part > settings.layer_pixels
-    ]
-    return problems or [
-        f"the mean of channel {name} differs in {count} blocks of {SIDE}×{SIDE} pixels"
-        for name, count in zip(names, others, strict=True)
-        if count
-    ]
+        return list(filter(None, pool.map(problem, names)))
 
 
 def differing(a: np.ndarray, b: np.ndarray, enough: float) -> float:
@@ -68,10 +61,10 @@ def differing(a: np.ndarray, b: np.ndarray, enough: float) -> float:
 
 def other_blocks(a: np.ndarray, b: np.ndarray) -> int:
     """The number of blocks whose means differ by more than edges explain."""
-    a, b = (plane.astype(np.float64)[..., None] for plane in (a, b))
-    difference = a - b
-    mean, square = (block_means(values, SIDE) for values in (difference, difference * difference))
-    size = block_means(np.maximum(np.abs(a), np.abs(b)), SIDE)
+    difference = (a - b)[..., None]
+    # In doubles: the square of a large float is none any more.
+    mean, square = (block_means(values, SIDE) for values in (difference, np.square(difference, dtype=np.float64)))
+    size = block_means(np.maximum(np.abs(a), np.abs(b))[..., None], SIDE)
     pixels = block_sizes((a.shape[1], a.shape[0]), SIDE)[..., None]
     error = np.sqrt(np.maximum(square - mean * mean, 0) / pixels)
     differs = np.abs(mean) > OF_MEAN * np.maximum(size, LEAST) + DEVIATIONS * error

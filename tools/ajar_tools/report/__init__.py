@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ajar_tools.gates.flip import flip_map, shrunk
+from ajar_tools.gates.flip import factor_for, flip_map, shrunk
 from ajar_tools.gates.statistical import Level
 from ajar_tools.picture import COLORS, Picture
 from ajar_tools.report.encode import data_uri, shared_exponent
@@ -82,10 +82,7 @@ def images(verdict: Verdict, settings: Settings) -> dict[str, Any]:
     """Everything that the viewer draws."""
     assert verdict.pictures
     new, reference = verdict.pictures
-    height, width = reference.pixels.shape[:2]
-    factor = 1
-    while -(-width // factor) * -(-height // factor) > MOST_PIXELS:
-        factor += 1
+    factor = factor_for(reference, MOST_PIXELS)
     # numpy and zlib work without the interpreter's lock.
     with ThreadPoolExecutor() as pool:
         colors = list(pool.map(lambda picture: shrunk(picture.color, factor), (new, reference)))
