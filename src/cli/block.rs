@@ -14,7 +14,7 @@ use serde_json::json;
 use super::{
     after::After,
     log::Format,
-    progress::{PLAIN_INTERVAL, duration},
+    progress::{PLAIN_INTERVAL, duration, samples},
 };
 use crate::{
     image::Destination,
@@ -153,7 +153,7 @@ fn progress(state: &State) -> String {
     if state.rounds == 0 {
         let glance = match state.samples {
             0 => String::new(),
-            samples => format!(", eye paths of {samples} samples a pixel meanwhile"),
+            count => format!(", eye paths of {} meanwhile", samples(count)),
         };
         return format!("{phase} {width}x{height}, no round finished yet{glance}");
     }
@@ -168,5 +168,5 @@ fn progress(state: &State) -> String {
         0 => String::new(),
         rejected => format!(", {rejected} contributions that were not finite left out"),
     };
-    format!("{phase} {width}x{height}, {} samples a pixel{noise}{time}{left}{rejected}", state.samples)
+    format!("{phase} {width}x{height}, {}{noise}{time}{left}{rejected}", samples(state.samples))
 }

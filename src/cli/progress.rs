@@ -66,7 +66,7 @@ fn describe(status: &Status, done: f64) -> String {
     };
     let left =
         time_left(status, done).map_or(String::new(), |left| format!(", about {} left", duration(left)));
-    format!("round {}, {} samples a pixel, {noise}{left}", status.rounds, status.samples)
+    format!("round {}, {}, {noise}{left}", status.rounds, samples(status.samples))
 }
 
 /// The same for programs.
@@ -79,6 +79,11 @@ fn numbers(status: &Status, done: f64) -> Value {
         "seconds_left": time_left(status, done).map(|left| left.as_secs_f64()),
         "noise": status.noise.map(|noise| noise.typical),
     })
+}
+
+/// `64 samples a pixel`.
+pub(super) fn samples(count: u64) -> String {
+    format!("{count} {} a pixel", if count == 1 { "sample" } else { "samples" })
 }
 
 /// `45 s`, `3 min 20 s`, `2 h 5 min`.
@@ -138,6 +143,7 @@ mod tests {
             describe(&status(10.0, Some(noise)), 0.2),
             "round 8, 64 samples a pixel, noise 2.1 % (worst tile 5 %), about 40 s left"
         );
+        assert_eq!(samples(1), "1 sample a pixel");
         assert_eq!(describe(&status(10.0, None), 0.0), "round 8, 64 samples a pixel, noise not yet known");
         let numbers = numbers(&status(10.0, Some(noise)), 0.2);
         assert_eq!((&numbers["rounds"], &numbers["seconds_left"]), (&json!(8), &json!(40.0)));

@@ -25,7 +25,7 @@ use super::{
     job::Job,
     log::{Format, Verbosity},
     print,
-    progress::Progress,
+    progress::{Progress, samples},
     results,
     signals::Signals,
 };
@@ -198,8 +198,7 @@ fn fail(cause: Cause, message: String) -> Vec<Diagnostic> {
 /// Writes the image as it is so far; a disk that is full now may have room at the end.
 fn snapshot(run: &Run<'_>, to: &Destination, args: &Args, log: Format) {
     let said = match results::write(run, to, args.stats_json.as_deref()) {
-        Ok(_) => Diagnostic::note(format!("snapshot after {} samples a pixel", run.status.samples))
-            .in_file(&to.exr),
+        Ok(_) => Diagnostic::note(format!("snapshot after {}", samples(run.status.samples))).in_file(&to.exr),
         Err(error) => Diagnostic { severity: Severity::Warning, ..error },
     };
     if !args.verbosity.quiet {

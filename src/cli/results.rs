@@ -6,7 +6,10 @@ use ajar_output::OutputError;
 use ajar_scene::{Cause, Diagnostic};
 use serde_json::json;
 
-use super::{log::Format, progress::duration};
+use super::{
+    log::Format,
+    progress::{duration, samples},
+};
 use crate::image::{self, Destination, Run};
 
 /// Writes the images, and the numbers to `stats`; returns notes about them.
@@ -40,11 +43,11 @@ pub(super) fn summary(run: &Run<'_>, to: &Destination, checkpoint: Option<&Path>
         format!(", noise {:.1} % (worst tile {:.0} %)", n.typical * 100.0, n.worst_tile * 100.0)
     });
     let partial = if run.complete { "" } else { " (interrupted)" };
-    let (samples, time) = (status.samples, duration(status.elapsed));
+    let (samples, time) = (samples(status.samples), duration(status.elapsed));
     let details: String = run.report.lines.iter().map(|line| format!("\n{line}")).collect();
     let files = [Some(exr), Some(png), checkpoint].into_iter().flatten();
     let files: String = files.map(|file| format!("\nwrote {file}")).collect();
-    format!("{samples} samples a pixel in {time}{noise}{partial}{details}{files}")
+    format!("{samples} in {time}{noise}{partial}{details}{files}")
 }
 
 fn shown(path: &Path) -> String {

@@ -1,7 +1,7 @@
 // Images of before, one a change: looked at while the pointer is on them, or compared with the image.
 
 import { imageOf } from "./link.js";
-import { say } from "./status.js";
+import { samples as inWords, say } from "./status.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -69,7 +69,7 @@ export class Compare {
   #list() {
     const buttons = this.#snapshots.toReversed().map(({ image, changed, samples }) => {
       const button = document.createElement("button");
-      const [name, size] = [`${image}  ${changed.join(", ") || "first image"}`, `${samples} samples a pixel`];
+      const [name, size] = [`${image}  ${changed.join(", ") || "first image"}`, inWords(samples)];
       button.append(span(name), span(size, "faint"));
       button.title = `${name}, ${size}`;
       button.dataset.image = image;

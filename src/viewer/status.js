@@ -9,6 +9,10 @@ export function duration(seconds) {
   return s < 7200 ? `${Math.floor(s / 60)} min` : `${Math.floor(s / 3600)} h ${Math.floor((s / 60) % 60)} min`;
 }
 
+export function samples(count) {
+  return `${count} ${count === 1 ? "sample" : "samples"} a pixel`;
+}
+
 let silence = null;
 
 // Says something for a moment.
@@ -30,8 +34,8 @@ export function showState(state) {
   const noise = state.noise === null ? "noise not yet known" : `noise ${percent(state.noise)} (worst ${percent(state.worst_tile)})`;
   const left = state.seconds_left === null || state.phase !== "rendering" ? "" : `, about ${duration(state.seconds_left)} left`;
   const [width, height] = state.size;
-  const rounds = state.rounds ? `${state.samples} samples a pixel, ${noise}, ${duration(state.seconds)}${left}`
-    : `no round finished yet${state.samples ? `, eye paths of ${state.samples} samples a pixel meanwhile` : ""}`;
+  const rounds = state.rounds ? `${samples(state.samples)}, ${noise}, ${duration(state.seconds)}${left}`
+    : `no round finished yet${state.samples ? `, eye paths of ${samples(state.samples)} meanwhile` : ""}`;
   $("numbers").textContent = state.image === 0 ? "" : `${width}×${height}, ${rounds}`;
   $("changed").textContent = state.shown_for.length ? `changed: ${state.shown_for.join(", ")}` : "";
   $("rejected").textContent = state.rejected > 0 ? `${state.rejected} contributions were negative or not finite and are left out` : "";

@@ -26,8 +26,8 @@ HEAD = """# What the comparison finds
 
 Made by `.venv/bin/python tools/proof` from a release build, on {date}. It ends with exit code 1 where there are more
 false alarms than chance explains, or where a mutant survives that noise does not hide. Renders have 48×32 pixels with
-albedo, normals and depth, 16 rounds of one sample a pixel and paths of up to 6 edges, references four times as many
-rounds.
+albedo, normals and depth and paths of up to 6 edges; where nothing else is said 16 rounds of one sample a pixel, and
+references four times as many rounds.
 """
 RULES = """
 ## Mutants that must fail

@@ -14,8 +14,9 @@ from synthetic import File, Recipe, file, scene
 
 SYNTHETIC = Recipe(width=256, height=192, rounds=ROUNDS, noise=0.5)
 SCENE = "caustic-glass"
-# Of the images by each integrator: Markov chains are noisier.
-RENDERED = {"path": ROUNDS, "mlt": 4 * ROUNDS}
+# Rounds of the images by each integrator, and samples a pixel in each. How bright a round of `mlt` is as a whole has
+# noise of its own, which all blocks have in common.
+RENDERED = {"path": (ROUNDS, 4), "mlt": (16 * ROUNDS, 4)}
 # Mutants that noise may hide; all others have to be found every time.
 HIDDEN = {
     "synthetic": {"half the rounds claimed as all"},
@@ -130,17 +131,17 @@ CHANGES = {
 
 def rendered_mutants(integrator: str) -> Iterator[Mutant]:
     """Those of renders: edited files, changed scenes, and one round that is counted often."""
-    rounds = RENDERED[integrator]
+    rounds, samples = RENDERED[integrator]
 
     def render(seed: int, changes: tuple[str, ...] = ()) -> File:
-        return Render(SCENE, integrator, seed, rounds, changes).file()
+        return Render(SCENE, integrator, seed, rounds, changes, samples).file()
 
     for name, edit in EDITS.items():
         yield Mutant(name, edited(render, edit))
     for name, changes in CHANGES.items():
         yield Mutant(name, lambda seed, changes=changes: render(seed, changes))
     yield Mutant("a tile of 16×16, +20 %", edited(render, scaled(1.2, TILE)))
-    few = edited(lambda seed: Render(SCENE, integrator, seed, 2).file(), repeated(rounds))
+    few = edited(lambda seed: Render(SCENE, integrator, seed, 2, (), samples).file(), repeated(rounds))
     yield Mutant("one seed for all rounds", few)
 
 
@@ -152,18 +153,20 @@ def sections(home: Path, count: int, trials: int) -> tuple[str, list[str]]:
     title = "synthetic images of 256×192 pixels with 50 % of noise a pixel and round"
     text, found = table(title, home, right, good, variance, ROUNDS, list(synthetic_mutants()), trials)
     problems = survivors("synthetic", found)
-    for integrator, rounds in RENDERED.items():
+    for integrator, (rounds, samples) in RENDERED.items():
         seeds = range(1, trials + 1)
-        twins = [Render(SCENE, integrator, seed, rounds) for seed in range(1, count + 1)]
-        longer = Render(SCENE, integrator, REFERENCE, rounds * LONGER)
+        twins = [Render(SCENE, integrator, seed, rounds, (), samples) for seed in range(1, count + 1)]
+        longer = Render(SCENE, integrator, REFERENCE, rounds * LONGER, (), samples)
         make([*twins, longer])
-        make(Render(SCENE, integrator, seed, rounds, changes) for seed in seeds for changes in CHANGES.values())
-        make(Render(SCENE, integrator, seed, 2) for seed in seeds)
+        make(
+            Render(SCENE, integrator, seed, rounds, changes, samples) for seed in seeds for changes in CHANGES.values()
+        )
+        make(Render(SCENE, integrator, seed, 2, (), samples) for seed in seeds)
         good = [render.file() for render in twins]
         variance = rounds * np.var([image.pixels[..., :3] for image in good], axis=0, ddof=1)
         right = longer.file().write(home / "reference.exr")
         mutants = list(rendered_mutants(integrator))
-        title = f"`{SCENE}` by `{integrator}`, {rounds} rounds"
+        title = f"`{SCENE}` by `{integrator}`, {rounds} rounds of {samples} samples a pixel"
         lines, found = table(title, home, right, good, variance, rounds, mutants, trials)
         text += lines
         problems += survivors(integrator, found)

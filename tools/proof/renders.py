@@ -19,8 +19,6 @@ from synthetic import File, Recipe
 ROOT = Path(__file__).parents[2]
 SIZE = (48, 32)
 ROUNDS = 16
-# Samples a pixel in a round: few, so that renders are cheap and their noise as skewed as it gets.
-SAMPLES = 1
 LAYERS = "albedo,normal,depth"
 # Edges of the longest path: enough for glass and doors, and cheap.
 DEPTH = 6
@@ -37,12 +35,14 @@ class Render:
     seed: int
     rounds: int = ROUNDS
     changes: tuple[str, ...] = ()
+    samples: int = 1
+    """A pixel, in a round: few make renders cheap and their noise as skewed as it gets."""
 
     @property
     def path(self) -> Path:
         """Where it is kept."""
         changes = hashlib.sha256(repr(self.changes).encode()).hexdigest()[:8] if self.changes else ""
-        return folder() / f"{self.scene}-{self.integrator}-{self.seed}-{self.rounds}{changes}.exr"
+        return folder() / f"{self.scene}-{self.integrator}-{self.seed}-{self.rounds}x{self.samples}{changes}.exr"
 
     def run(self) -> None:
         """Renders, on one thread."""
@@ -51,13 +51,13 @@ class Render:
         begun = self.path.with_name(f"part-{self.path.name}")
         arguments = ["--integrator", self.integrator, "--seed", str(self.seed), "--size", f"{width}x{height}"]
         arguments += ["--threads", "1", "--max-depth", str(DEPTH), "--aov", LAYERS, *sets(self.changes)]
-        in_rounds(scene, begun, self.rounds, SAMPLES, arguments)
+        in_rounds(scene, begun, self.rounds, self.samples, arguments)
         begun.rename(self.path)
 
     def file(self) -> File:
         """The image, to be spoiled and written again."""
         picture = read(self.path)
-        assert picture.attributes["samplesPerPixel"] == SAMPLES * self.rounds
+        assert picture.attributes["samplesPerPixel"] == self.samples * self.rounds
         return spoilable(picture)
 
 

@@ -11,6 +11,7 @@ from statistics import NormalDist
 
 import numpy as np
 from ajar_tools import CannotCompareError, Outcome, Picture, Settings, compare, read
+from ajar_tools.comparison import unjudged
 from ajar_tools.gates import finite, numbers, statistical, structure, variance
 from ajar_tools.verdict import Status
 
@@ -22,8 +23,13 @@ def ajar_compare(new: Path, reference: Path) -> bool:
     return compare(new, reference, Settings()).outcome is Outcome.PASS
 
 
+def is_too_noisy(new: Picture, reference: Picture) -> bool:
+    """Whether both declare so much noise that statistics do not judge and FLIP does."""
+    return unjudged(statistical.check(new, reference, Settings()), Settings()) != ""
+
+
 def differ(new: Picture, reference: Picture, settings: Settings) -> bool:
-    """The same, without FLIP, which costs most and does not judge where both images declare their noise."""
+    """The same, without FLIP, which costs most and judges only images with no noise declared, or too much."""
     gates = (structure.check, finite.check, statistical.check, variance.check, numbers.check)
     return any(gate(new, reference, settings).status is Status.FAIL for gate in gates)
 
