@@ -44,7 +44,8 @@ def section(count: int) -> tuple[str, list[str]]:
         f"{count} renders with other seeds, each against one of {LONGER} times as many rounds, and each against",
         f"each other ({pairs} pairs): false alarms at the default α of 0.001 and at one of 0.05. The last column",
         "has the renders that are *too noisy* for the reference: twice the light would not be seen. `ajar diff` says",
-        "so and lets FLIP judge, which finds most of them different: such images want more samples.\n",
+        "so and lets FLIP judge, which finds most of them different: such images want more samples.",
+        "Pairs are not independent: one image that is unlike the others alarms in many of them.\n",
         "| scene | integrator | α 0.001: reference | pairs | α 0.05: reference | pairs | too noisy |",
         "|---|---|---|---|---|---|---|",
     ]
