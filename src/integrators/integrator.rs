@@ -50,8 +50,9 @@ impl Default for Metropolis {
     }
 }
 
-/// Steps of a chain where nothing says another number: fewer waste seeds, more do not pay.
-const CHAIN_LENGTH: u32 = 4096;
+/// Steps of a chain where nothing says another number. A few bright pixels among dark ones are seen by the chains that begin
+/// there alone: with longer and fewer chains their share of the light varies more (docs/metropolis.md has figures).
+const CHAIN_LENGTH: u32 = 512;
 
 impl Settings {
     /// Numbers of the samples that a pixel gets in `round`: rounds go on where the one before ends.

@@ -34,7 +34,7 @@ pub struct RenderSettings {
     pub mutations: BTreeMap<String, f64>,
     /// Name of the way in which mutations are weighed. Default `fixed`.
     pub mutation_choice: Option<String>,
-    /// Steps of a chain of Metropolis light transport, at least 1. Default 4096.
+    /// Steps of a chain of Metropolis light transport, at least 1. Default 512.
     pub chain_length: Option<u32>,
     /// Name of the way in which lens subpaths spread over the image. Default `across-chains`.
     pub lens_subpaths: Option<String>,
