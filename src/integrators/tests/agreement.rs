@@ -11,7 +11,7 @@ use ajar_integrators::{
 use common::{
     compare::{assert_blocks_agree, assert_same},
     render, render_blocks,
-    scenes::{POINT_LIGHT_AND_GLASS, SCENES},
+    scenes::{IMAGES, POINT_LIGHT_AND_GLASS, SCENES},
     settings,
 };
 
@@ -27,7 +27,7 @@ fn path_tracing_and_bidirectional_path_tracing() {
 
 #[test]
 fn bidirectional_path_tracing_and_metropolis_light_transport() {
-    for scene in SCENES.iter().chain([&POINT_LIGHT_AND_GLASS]) {
+    for scene in SCENES.iter().chain([&IMAGES, &POINT_LIGHT_AND_GLASS]) {
         let world = (scene.world)();
         let bdpt = render_blocks(&world, &Bdpt, &settings(&world, 3, scene.depth, 12), 24);
         let mlt = render_blocks(&world, &Mlt, &settings(&world, 4, scene.depth, 48), 32);

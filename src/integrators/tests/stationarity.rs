@@ -20,7 +20,7 @@ use ajar_integrators::mlt::{
 };
 use ajar_render::rng::Rng;
 use common::{
-    scenes::{SCENES, TestScene},
+    scenes::{IMAGES, SCENES, TestScene},
     settings,
     stationarity::drift,
 };
@@ -64,7 +64,7 @@ fn every_mutation_alone() {
 
 #[test]
 fn all_together() {
-    SCENES.iter().for_each(|scene| check(scene, &mutations(&BTreeMap::new()).0, &Plain));
+    SCENES.iter().chain([&IMAGES]).for_each(|scene| check(scene, &mutations(&BTreeMap::new()).0, &Plain));
 }
 
 /// Another density: short paths and the left of the image count more.
