@@ -173,6 +173,9 @@ difference doubles its score by that, while rare bright paths, which short rende
 miss, come closer. What stays beyond {limit} is marked. The columns from `bidirectional` to `+ manifold` are `mlt` with
 the bidirectional mutation and one other.
 
+Path tracing seldom finds the light that glass or water gathers from a lamp: in `caustic-glass` and `pool` its blocks
+stay too dark for longer than this, and know too little of their noise.
+
 `lens` has depth of field; `lattice` textures, normal maps, cut-outs and a half-transparent sheet; `pool` light that
 reaches the camera through moving water both ways; `window-room` sun and sky; `many-lights` some hundred lamps.
 
