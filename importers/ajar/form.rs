@@ -92,6 +92,10 @@ fn texture() -> Result<Value, Diagnostic> {
 
 /// Reads a value, with the path of what does not fit.
 pub(super) fn read<T: DeserializeOwned>(value: Value, element: &str) -> Result<T, Diagnostic> {
+    // To follow the path costs more than to read, so only what does not fit is read with it.
+    if let Ok(fitting) = T::deserialize(&value) {
+        return Ok(fitting);
+    }
     serde_path_to_error::deserialize(value).map_err(|e| {
         let path = e.path().to_string();
         let place = match path.as_str() {
@@ -105,7 +109,11 @@ pub(super) fn read<T: DeserializeOwned>(value: Value, element: &str) -> Result<T
 
 /// The items of a list.
 fn list(given: Option<Value>, element: &str) -> Result<Vec<Value>, Diagnostic> {
-    given.map_or_else(|| Ok(Vec::new()), |given| read(given, element))
+    match given {
+        None => Ok(Vec::new()),
+        Some(Value::Array(items)) => Ok(items),
+        Some(given) => read(given, element),
+    }
 }
 
 /// A list whose items may leave out what `default` says.
@@ -114,33 +122,32 @@ fn completed<T: DeserializeOwned>(
     element: &str,
     default: &Value,
 ) -> Result<Arena<T>, Diagnostic> {
-    let item = |(i, mut item): (usize, Value)| {
-        let element = format!("{element}[{i}]");
-        complete(&mut item, default, &element)?;
+    let item = |(i, given): (usize, Value)| {
+        let (element, mut item) = (format!("{element}[{i}]"), default.clone());
+        overlay(&mut item, given, &element)?;
         read(item, &element)
     };
     list(given, element)?.into_iter().enumerate().map(item).collect()
 }
 
-/// Adds what is missing. A material's input may be written as its value alone.
-fn complete(given: &mut Value, default: &Value, element: &str) -> Result<(), Diagnostic> {
-    let Some(default) = default.as_object() else { return Ok(()) };
-    if !given.is_object() && default.contains_key("value") {
-        *given = json!({ "value": given.take() });
-    }
-    let Some(given) = given.as_object_mut() else {
-        return Err(Diagnostic::error("an object is needed").element(element));
+/// Puts what is given over a default. A material's input may be written as its value alone.
+fn overlay(default: &mut Value, given: Value, element: &str) -> Result<(), Diagnostic> {
+    let Value::Object(members) = default else {
+        *default = given;
+        return Ok(());
     };
-    if let Some(key) = given.keys().find(|key| !default.contains_key(*key)) {
-        return Err(unknown(&format!("{element}.{key}")));
-    }
-    for (key, default) in default {
-        match given.get_mut(key) {
-            Some(given) => complete(given, default, &format!("{element}.{key}"))?,
-            None => drop(given.insert(key.clone(), default.clone())),
+    match (given, members.get_mut("value")) {
+        (Value::Object(given), _) => given.into_iter().try_for_each(|(key, given)| {
+            let element = format!("{element}.{key}");
+            let default = members.get_mut(&key).ok_or_else(|| unknown(&element))?;
+            overlay(default, given, &element)
+        }),
+        (given, Some(value)) => {
+            *value = given;
+            Ok(())
         }
+        _ => Err(Diagnostic::error("an object is needed").element(element)),
     }
-    Ok(())
 }
 
 fn images(
