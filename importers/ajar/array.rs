@@ -1,5 +1,7 @@
 //! Arrays: a range of the binary chunk, or the numbers themselves.
 
+use std::borrow::Cow;
+
 use ajar_scene::{Cause, Diagnostic};
 use bytemuck::Pod;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -23,19 +25,19 @@ pub(super) struct Binary<'a> {
     pub budget: Budget,
 }
 
-impl Binary<'_> {
-    /// The items that `given` holds or points to.
+impl<'a> Binary<'a> {
+    /// The items that `given` holds or points to, where they are if they lie there as the processor wants them.
     pub fn array<T: Pod + DeserializeOwned>(
         &self,
         given: Value,
         element: &str,
-    ) -> Result<Vec<T>, Diagnostic> {
+    ) -> Result<Cow<'a, [T]>, Diagnostic> {
         let wrong = |e: serde_json::Error| {
             Diagnostic::error(format!("{e}; an array or {{\"offset\", \"count\"}} is needed"))
                 .element(element)
         };
         if given.is_array() {
-            return serde_json::from_value(given).map_err(wrong);
+            return serde_json::from_value(given).map(Cow::Owned).map_err(wrong);
         }
         let range: Range = serde_json::from_value(given).map_err(wrong)?;
         let size = size_of::<T>() as u64;
@@ -56,7 +58,7 @@ impl Binary<'_> {
             let error = Diagnostic::error("needs more memory than the limit");
             return Err(error.because(Cause::Resource).element(element));
         }
-        let items = bytemuck::try_cast_slice(part).map(<[T]>::to_vec);
-        Ok(items.unwrap_or_else(|_| bytemuck::pod_collect_to_vec(part)))
+        let copied = |_| Cow::Owned(bytemuck::pod_collect_to_vec(part));
+        Ok(bytemuck::try_cast_slice(part).map_or_else(copied, Cow::Borrowed))
     }
 }

@@ -165,7 +165,9 @@ fn images(
                 files.push(path.clone());
                 ImageSource::File(path)
             }
-            (None, Some(bytes)) => ImageSource::Embedded(binary.array::<u8>(bytes, &element)?.into()),
+            (None, Some(bytes)) => {
+                ImageSource::Embedded(binary.array::<u8>(bytes, &element)?.into_owned().into())
+            }
             _ => return Err(Diagnostic::error("either \"file\" or \"bytes\" is needed").element(element)),
         };
         Ok(Image { name: form.name, source })

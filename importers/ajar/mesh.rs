@@ -1,5 +1,7 @@
 //! Meshes: triangles as they are, or polygons that become triangles.
 
+use std::borrow::Cow;
+
 use ajar_scene::{Arena, Diagnostic, Id, Loss, Material, Mesh, Node};
 use bytemuck::Pod;
 use glam::{Vec2, Vec3, Vec4};
@@ -154,12 +156,12 @@ struct Reader<'a> {
     element: String,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
     fn mesh(&self, form: Value) -> Result<Made, Diagnostic> {
         if form.get("faces").is_some() { self.faces(form) } else { Ok((vec![self.triangles(form)?], None)) }
     }
 
-    fn array<T: Pod + DeserializeOwned>(&self, given: Value, key: &str) -> Result<Vec<T>, Diagnostic> {
+    fn array<T: Pod + DeserializeOwned>(&self, given: Value, key: &str) -> Result<Cow<'a, [T]>, Diagnostic> {
         self.binary.array(given, &format!("{}.{key}", self.element))
     }
 
@@ -167,31 +169,40 @@ impl Reader<'_> {
         &self,
         given: Option<Value>,
         key: &str,
-    ) -> Result<Option<Vec<T>>, Diagnostic> {
+    ) -> Result<Option<Cow<'a, [T]>>, Diagnostic> {
         given.map(|given| self.array(given, key)).transpose()
+    }
+
+    /// An array that is kept; none is an empty one.
+    fn owned<T: Pod + DeserializeOwned>(
+        &self,
+        given: Option<Value>,
+        key: &str,
+    ) -> Result<Vec<T>, Diagnostic> {
+        Ok(self.optional(given, key)?.map(Cow::into_owned).unwrap_or_default())
     }
 
     fn triangles(&self, form: Value) -> Result<Mesh, Diagnostic> {
         let form: Triangles = read(form, &self.element)?;
         let mut uvs = Vec::with_capacity(form.uvs.len());
         for (set, given) in form.uvs.into_iter().enumerate() {
-            uvs.push(self.array(given, &format!("uvs[{set}]"))?);
+            uvs.push(self.array(given, &format!("uvs[{set}]"))?.into_owned());
         }
         Ok(Mesh {
             name: form.name,
-            positions: self.array(form.positions, "positions")?,
-            triangles: self.array(form.triangles, "triangles")?,
-            normals: self.optional(form.normals, "normals")?,
-            tangents: self.optional(form.tangents, "tangents")?,
+            positions: self.array(form.positions, "positions")?.into_owned(),
+            triangles: self.array(form.triangles, "triangles")?.into_owned(),
+            normals: self.optional(form.normals, "normals")?.map(Cow::into_owned),
+            tangents: self.optional(form.tangents, "tangents")?.map(Cow::into_owned),
             uvs,
-            colors: self.optional(form.colors, "colors")?,
+            colors: self.optional(form.colors, "colors")?.map(Cow::into_owned),
             material: form.material,
         })
     }
 
     fn faces(&self, form: Value) -> Result<Made, Diagnostic> {
         let form: Faces = read(form, &self.element)?;
-        let faces: Vec<u32> = self.array(form.faces, "faces")?;
+        let faces = self.array(form.faces, "faces")?;
         let mut polygons = Polygons {
             positions: self.array(form.positions, "positions")?,
             corners: self.array(form.corners, "corners")?,
@@ -203,11 +214,11 @@ impl Reader<'_> {
             ..Polygons::default()
         };
         polygons.check().map_err(|error| error.element(&self.element))?;
-        let holes: Vec<u32> = self.optional(form.holes, "holes")?.unwrap_or_default();
+        let holes = self.optional(form.holes, "holes")?.unwrap_or_default();
         self.each_face(&holes, &mut polygons.is_hole, "holes", true)?;
         for (index, part) in form.parts.into_iter().enumerate() {
             let key = format!("parts[{index}].faces");
-            let faces: Vec<u32> = self.array(part.faces, &key)?;
+            let faces = self.array(part.faces, &key)?;
             self.each_face(&faces, &mut polygons.part_of, &key, index as u32 + 1)?;
             polygons.materials.push(part.material);
         }
@@ -239,7 +250,7 @@ impl Reader<'_> {
         form: AttributeForm,
         polygons: &Polygons,
         key: &str,
-    ) -> Result<Attribute<T>, Diagnostic> {
+    ) -> Result<Attribute<'a, T>, Diagnostic> {
         let values = self.array(form.values, &format!("{key}.values"))?;
         let indices = self.optional(form.indices, &format!("{key}.indices"))?;
         polygons
@@ -253,12 +264,11 @@ impl Reader<'_> {
         if form.levels > MOST_LEVELS {
             return Err(wrong(format!("{} levels are more than {MOST_LEVELS}", form.levels)));
         }
-        let given = |given, key: &str| self.optional(given, &format!("subdivision.{key}"));
-        let crease_sharpness = given(form.crease_sharpness, "crease_sharpness")?.unwrap_or_default();
-        let position_sharpness = given(form.position_sharpness, "position_sharpness")?.unwrap_or_default();
-        let creases: Vec<[u32; 2]> = self.optional(form.creases, "subdivision.creases")?.unwrap_or_default();
-        let sharp_positions: Vec<u32> =
-            self.optional(form.sharp_positions, "subdivision.sharp_positions")?.unwrap_or_default();
+        let given = |given, key: &str| self.owned(given, &format!("subdivision.{key}"));
+        let crease_sharpness = given(form.crease_sharpness, "crease_sharpness")?;
+        let position_sharpness = given(form.position_sharpness, "position_sharpness")?;
+        let creases: Vec<[u32; 2]> = self.owned(form.creases, "subdivision.creases")?;
+        let sharp_positions: Vec<u32> = self.owned(form.sharp_positions, "subdivision.sharp_positions")?;
         for (what, things, sharpness) in [
             ("creases", creases.len(), crease_sharpness.len()),
             ("sharp positions", sharp_positions.len(), position_sharpness.len()),

@@ -11,7 +11,7 @@ pub(crate) fn vector_area(points: &[Vec3]) -> DVec3 {
     points.windows(2).map(|edge| (edge[0].as_dvec3() - origin).cross(edge[1].as_dvec3() - origin)).sum()
 }
 
-/// Splits a polygon with the given normal into triangles of indices into `points`, wound like the polygon; triangles
+/// Splits a polygon with a normal of any length into triangles of indices into `points`, wound like the polygon; triangles
 /// without area are left out. `false`: it crosses itself, or is too intricate, and the triangles overlap.
 pub(crate) fn triangulate(points: &[Vec3], normal: DVec3, out: &mut Vec<[u32; 3]>) -> bool {
     if points.len() == 3 {

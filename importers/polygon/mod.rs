@@ -7,6 +7,8 @@ mod normals;
 mod subdivide;
 mod triangles;
 
+use std::borrow::Cow;
+
 use ajar_scene::{Diagnostic, Id, Material};
 use glam::{Vec2, Vec3, Vec4};
 use serde::Deserialize;
@@ -15,17 +17,10 @@ pub(crate) use subdivide::{Boundary, Linear};
 
 /// Values, and which of them each corner has.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Attribute<T> {
-    pub values: Vec<T>,
-    /// One a corner.
-    pub indices: Vec<u32>,
-}
-
-impl<T: Copy> Attribute<T> {
-    /// The value that a corner has.
-    fn at(&self, corner: usize) -> T {
-        self.values[self.indices[corner] as usize]
-    }
+pub(crate) struct Attribute<'a, T: Clone> {
+    pub values: Cow<'a, [T]>,
+    /// One a corner; without, the corners have the values in turn.
+    pub indices: Option<Cow<'a, [u32]>>,
 }
 
 /// How a mesh is subdivided; keys and defaults are those of `docs/ajar-scene.md`.
@@ -45,22 +40,22 @@ pub(crate) struct Subdivision {
 
 /// A mesh of polygons.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Polygons {
+pub(crate) struct Polygons<'a> {
     pub name: String,
-    pub positions: Vec<Vec3>,
+    pub positions: Cow<'a, [Vec3]>,
     /// Number of corners of each face.
-    pub faces: Vec<u32>,
+    pub faces: Cow<'a, [u32]>,
     /// Position of each corner.
-    pub corners: Vec<u32>,
+    pub corners: Cow<'a, [u32]>,
     /// One a face: an index into `materials`.
     pub part_of: Vec<u32>,
     /// One a face.
     pub is_hole: Vec<bool>,
     /// That of the faces in no part comes first.
     pub materials: Vec<Option<Id<Material>>>,
-    pub normals: Option<Attribute<Vec3>>,
-    pub uvs: Vec<Attribute<Vec2>>,
-    pub colors: Option<Attribute<Vec4>>,
+    pub normals: Option<Attribute<'a, Vec3>>,
+    pub uvs: Vec<Attribute<'a, Vec2>>,
+    pub colors: Option<Attribute<'a, Vec4>>,
     pub subdivision: Option<Subdivision>,
 }
 
@@ -75,7 +70,7 @@ pub(crate) enum Per {
     Mesh,
 }
 
-impl Polygons {
+impl Polygons<'_> {
     /// Whether faces, corners and positions fit each other; faces with less than three corners are dropped.
     ///
     /// # Errors
@@ -104,19 +99,19 @@ impl Polygons {
     ///
     /// # Errors
     /// A number of indices that does not fit, or an index beyond the values.
-    pub fn attribute<T>(
+    pub fn attribute<'v, T: Clone>(
         &self,
-        values: Vec<T>,
-        indices: Option<Vec<u32>>,
+        values: Cow<'v, [T]>,
+        indices: Option<Cow<'v, [u32]>>,
         per: Per,
-    ) -> Result<Attribute<T>, Diagnostic> {
+    ) -> Result<Attribute<'v, T>, Diagnostic> {
         let count = match per {
             Per::Corner => self.corners.len(),
             Per::Position => self.positions.len(),
             Per::Face => self.faces.len(),
             Per::Mesh => 1,
         };
-        let given = indices.as_ref().map_or(values.len(), Vec::len);
+        let given = indices.as_ref().map_or(values.len(), |indices| indices.len());
         if given != count {
             return Err(Diagnostic::error(format!("has {given} entries, {count} are needed")));
         }
@@ -125,14 +120,14 @@ impl Polygons {
         }
         let index = |entry: u32| indices.as_ref().map_or(entry, |indices| indices[entry as usize]);
         let indices = match per {
-            Per::Corner => indices.unwrap_or_else(|| (0..count as u32).collect()),
-            Per::Position => self.corners.iter().map(|&position| index(position)).collect(),
+            Per::Corner => indices,
+            Per::Position => Some(self.corners.iter().map(|&position| index(position)).collect()),
             Per::Face => {
                 let corners =
                     |(face, &count): (usize, &u32)| std::iter::repeat_n(index(face as u32), count as usize);
-                self.faces.iter().enumerate().flat_map(corners).collect()
+                Some(self.faces.iter().enumerate().flat_map(corners).collect())
             }
-            Per::Mesh => vec![index(0); self.corners.len()],
+            Per::Mesh => Some(vec![index(0); self.corners.len()].into()),
         };
         Ok(Attribute { values, indices })
     }
@@ -140,7 +135,7 @@ impl Polygons {
 
 /// Whether all indices are below `count`.
 pub(crate) fn within(indices: &[u32], count: usize, of: &str) -> Result<(), Diagnostic> {
-    match indices.iter().find(|&&index| index as usize >= count) {
+    match indices.iter().max().filter(|&&index| index as usize >= count) {
         Some(index) => Err(Diagnostic::error(format!("index {index} reaches beyond the {count} {of}"))),
         None => Ok(()),
     }

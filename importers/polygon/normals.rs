@@ -13,7 +13,7 @@ pub(super) fn smooth(
     topology: &Topology,
     edges: &Edges,
     sharpness: &[f32],
-) -> Attribute<Vec3> {
+) -> Attribute<'static, Vec3> {
     let fans = fans(topology, edges, sharpness);
     let mut of_root = vec![u32::MAX; fans.len()];
     let mut sums: Vec<DVec3> = Vec::with_capacity(positions.len());
@@ -32,7 +32,10 @@ pub(super) fn smooth(
             indices.push(*root);
         }
     }
-    Attribute { values: sums.into_iter().map(|sum| sum.normalize_or(DVec3::Y).as_vec3()).collect(), indices }
+    Attribute {
+        values: sums.into_iter().map(|sum| sum.normalize_or(DVec3::Y).as_vec3()).collect(),
+        indices: Some(indices.into()),
+    }
 }
 
 /// For each corner one that stands for all corners of its fan.

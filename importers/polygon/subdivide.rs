@@ -1,5 +1,7 @@
 //! Subdivision of a polygon mesh with all its attributes.
 
+use std::borrow::Cow;
+
 use ajar_scene::{Cause, Diagnostic};
 
 use super::{
@@ -38,7 +40,7 @@ pub(crate) enum Linear {
     Corners,
 }
 
-impl Polygons {
+impl Polygons<'_> {
     /// The mesh refined, positions at the limit, with smooth normals. A mesh without subdivision is returned as it is.
     ///
     /// # Errors
@@ -53,7 +55,8 @@ impl Polygons {
             let message = format!("{quads} faces after subdivision need more memory than the limit");
             return Err(Diagnostic::error(message).because(Cause::Resource));
         }
-        let topology = Topology { first: self.first(), corners: std::mem::take(&mut self.corners) };
+        let topology =
+            Topology { first: self.first(), corners: std::mem::take(&mut self.corners).into_owned() };
         let edges = Edges::of(&topology);
         let creases = subdivision.edge_sharpness(&edges);
         self.open(&subdivision, &topology, &edges);
@@ -65,13 +68,20 @@ impl Polygons {
         let boundary = edges.boundaries();
         let edge_sharpness = creases.iter().zip(&boundary).map(|(a, b)| a.max(*b)).collect();
         let sharpness = subdivision.vertex_sharpness(&edges, &topology, self.positions.len());
-        let net = Net { values: self.positions, topology, edges, edge_sharpness, sharpness, linear: false };
+        let net = Net {
+            values: self.positions.into_owned(),
+            topology,
+            edges,
+            edge_sharpness,
+            sharpness,
+            linear: false,
+        };
         let origin = (0..net.topology.faces() as u32).collect();
         let (net, origin) = refine(net, origin, subdivision.levels);
-        self.positions = if subdivision.levels > 0 { net.limit() } else { net.values };
+        self.positions = if subdivision.levels > 0 { net.limit() } else { net.values }.into();
         self.normals = Some(normals::smooth(&self.positions, &net.topology, &net.edges, &net.edge_sharpness));
         self.faces = net.topology.first.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        self.corners = net.topology.corners;
+        self.corners = net.topology.corners.into();
         self.part_of =
             origin.iter().map(|&face| self.part_of.get(face as usize).copied().unwrap_or(0)).collect();
         self.is_hole =
@@ -154,8 +164,10 @@ struct Channel<'a> {
 
 impl Channel<'_> {
     /// The attribute of the refined mesh. It has its own vertices: where it differs across an edge is a seam.
-    fn refined<T: Value>(&self, attribute: Attribute<T>, mesh: &Topology) -> Attribute<T> {
-        let topology = Topology { first: mesh.first.clone(), corners: attribute.indices };
+    fn refined<'v, T: Value>(&self, attribute: Attribute<'v, T>, mesh: &Topology) -> Attribute<'v, T> {
+        let in_turn = || (0..mesh.corners.len() as u32).collect();
+        let corners = attribute.indices.map_or_else(in_turn, Cow::into_owned);
+        let topology = Topology { first: mesh.first.clone(), corners };
         let edges = Edges::of(&topology);
         let mut edge_sharpness = edges.boundaries();
         for (corner, &edge) in edges.after.iter().enumerate() {
@@ -173,11 +185,12 @@ impl Channel<'_> {
             }
         }
         let linear = self.subdivision.linear == Linear::All;
-        let net = Net { values: attribute.values, topology, edges, edge_sharpness, sharpness, linear };
+        let net =
+            Net { values: attribute.values.into_owned(), topology, edges, edge_sharpness, sharpness, linear };
         let levels = self.subdivision.levels;
         let (net, _) = refine(net, vec![0; mesh.first.len()], levels);
         let values = if levels > 0 { net.limit() } else { net.values };
-        Attribute { values, indices: net.topology.corners }
+        Attribute { values: values.into(), indices: Some(net.topology.corners.into()) }
     }
 }
 
@@ -187,27 +200,27 @@ mod tests {
 
     use super::*;
 
-    fn cube() -> Polygons {
+    fn cube() -> Polygons<'static> {
         let positions =
             (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0);
         Polygons {
             positions: positions.collect(),
-            faces: vec![4; 6],
-            corners: vec![0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5],
+            faces: vec![4; 6].into(),
+            corners: vec![0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5].into(),
             part_of: vec![0; 6],
             is_hole: vec![false; 6],
             ..Polygons::default()
         }
     }
 
-    fn grid(n: u32) -> Polygons {
+    fn grid(n: u32) -> Polygons<'static> {
         let at = |x: u32, y: u32| y * (n + 1) + x;
         let cells = || (0..n * n).map(|i| (i % n, i / n));
         Polygons {
             positions: (0..(n + 1) * (n + 1))
                 .map(|i| Vec3::new((i % (n + 1)) as f32, (i / (n + 1)) as f32, 0.0))
                 .collect(),
-            faces: vec![4; (n * n) as usize],
+            faces: vec![4; (n * n) as usize].into(),
             corners: cells()
                 .flat_map(|(x, y)| [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)])
                 .collect(),
@@ -217,7 +230,7 @@ mod tests {
         }
     }
 
-    fn subdivided(mut mesh: Polygons, subdivision: Subdivision) -> Polygons {
+    fn subdivided(mut mesh: Polygons<'_>, subdivision: Subdivision) -> Polygons<'_> {
         mesh.subdivision = Some(subdivision);
         mesh.refined(&Budget::new(1 << 30)).expect("fits")
     }
@@ -234,8 +247,8 @@ mod tests {
             assert_eq!(ball.faces.len(), 6 << (2 * n));
             // Neighbours of (1,1,1) on the cube sum to (1,1,1), the corners across its faces to (-1,-1,-1).
             let expected = (9.0 + 4.0 - 1.0) / 24.0;
-            for (limit, at) in ball.positions.iter().zip(cube().positions) {
-                assert!((*limit - at * expected).length() < 1e-5, "{n}: {limit}");
+            for (limit, at) in ball.positions.iter().zip(cube().positions.iter()) {
+                assert!((*limit - *at * expected).length() < 1e-5, "{n}: {limit}");
             }
         }
     }
@@ -243,7 +256,7 @@ mod tests {
     #[test]
     fn the_limit_does_not_depend_on_the_level() {
         let (coarse, fine) = (subdivided(cube(), levels(2)), subdivided(cube(), levels(4)));
-        for (a, b) in coarse.positions.iter().zip(&fine.positions) {
+        for (a, b) in coarse.positions.iter().zip(fine.positions.iter()) {
             assert!((*a - *b).length() < 1e-5);
         }
     }
@@ -271,7 +284,7 @@ mod tests {
                 (0..8_u32).flat_map(|a| [1, 2, 4].map(|bit| [a, a ^ bit])).filter(|e| e[0] < e[1]).collect();
             Subdivision { crease_sharpness: vec![sharpness; creases.len()], creases, ..levels(3) }
         };
-        let volume = |mesh: &Polygons| {
+        let volume = |mesh: &Polygons<'_>| {
             let quads = mesh
                 .corners
                 .chunks(4)
@@ -294,8 +307,8 @@ mod tests {
         let square = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
         let unfolded = |linear: Linear| {
             let mut mesh = cube();
-            mesh.uvs = vec![Attribute { values: square.repeat(6), indices: (0..24).collect() }];
-            subdivided(mesh, Subdivision { linear, ..levels(2) }).uvs.remove(0).values
+            mesh.uvs = vec![Attribute { values: square.repeat(6).into(), indices: None }];
+            subdivided(mesh, Subdivision { linear, ..levels(2) }).uvs.remove(0).values.into_owned()
         };
         for linear in [Linear::All, Linear::Boundary, Linear::Corners] {
             assert_eq!(unfolded(linear)[..4], square, "{linear:?}");
@@ -306,20 +319,21 @@ mod tests {
     #[test]
     fn attributes_follow_positions_where_they_have_the_same_seams() {
         let mut mesh = cube();
-        let indices = mesh.corners.clone();
+        let indices = Some(mesh.corners.clone());
         mesh.uvs = vec![Attribute { values: mesh.positions.iter().map(|p| p.truncate()).collect(), indices }];
         let ball = subdivided(mesh, levels(3));
-        for (uv, p) in ball.uvs[0].values.iter().zip(&ball.positions) {
+        for (uv, p) in ball.uvs[0].values.iter().zip(ball.positions.iter()) {
             assert!((*uv - p.truncate()).length() < 1e-6);
         }
-        assert_eq!(ball.uvs[0].indices, ball.corners);
+        assert_eq!(ball.uvs[0].indices.as_deref(), Some(&*ball.corners));
     }
 
     #[test]
     fn normals_are_those_of_the_surface() {
         let ball = subdivided(cube(), levels(5));
         let normals = ball.normals.expect("normals");
-        for (&vertex, &normal) in ball.corners.iter().zip(&normals.indices) {
+        let indices = normals.indices.expect("indices");
+        for (&vertex, &normal) in ball.corners.iter().zip(indices.iter()) {
             let (p, n) = (ball.positions[vertex as usize], normals.values[normal as usize]);
             assert!((n.length() - 1.0).abs() < 1e-5 && n.dot(p.normalize()) > 0.95, "{p} {n}");
         }

@@ -1,11 +1,11 @@
 //! Polygons into triangle meshes, one a material.
 
-use std::{iter::successors, ops::Range};
+use std::ops::Range;
 
 use ajar_scene::Mesh;
-use glam::Vec3;
+use glam::{Vec2, Vec3, Vec4};
 
-use super::{Polygons, ears};
+use super::{Attribute, Polygons, ears};
 
 /// No vertex.
 const NONE: u32 = u32::MAX;
@@ -25,20 +25,53 @@ pub(crate) struct Triangulated {
     pub crossing: usize,
 }
 
-/// The mesh of one part in the making.
+/// The mesh of one part in the making. Arrays are slices here: this is the loop that large imports spend their time in.
 struct Builder<'a> {
-    polygons: &'a Polygons,
+    positions: &'a [Vec3],
+    corners: &'a [u32],
+    normals: Option<Values<'a, Vec3>>,
+    uvs: Vec<Values<'a, Vec2>>,
+    colors: Option<Values<'a, Vec4>>,
     part: u32,
-    mesh: Mesh,
     /// One a position: the part whose vertex was made last there, and that vertex.
     latest: &'a mut [[u32; 2]],
     /// One a vertex: that before it at the same position.
     before: Vec<u32>,
+    /// One a vertex: the first of the corners that it is made of.
+    made_of: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
     points: Vec<Vec3>,
     found: Vec<[u32; 3]>,
 }
 
-impl Polygons {
+/// The values of an attribute.
+#[derive(Clone, Copy)]
+struct Values<'a, T> {
+    values: &'a [T],
+    /// As in [`Attribute`].
+    indices: Option<&'a [u32]>,
+}
+
+impl<'a, T: Copy + PartialEq> Values<'a, T> {
+    fn of(attribute: &'a Attribute<'_, T>) -> Self {
+        Self { values: &attribute.values, indices: attribute.indices.as_deref() }
+    }
+
+    /// The value that a corner has.
+    fn at(&self, corner: usize) -> T {
+        self.values[self.indices.map_or(corner, |indices| indices[corner] as usize)]
+    }
+
+    fn are_equal(&self, a: usize, b: usize) -> bool {
+        self.at(a) == self.at(b)
+    }
+
+    fn gathered(&self, corners: &[u32]) -> Vec<T> {
+        corners.iter().map(|&corner| self.at(corner as usize)).collect()
+    }
+}
+
+impl Polygons<'_> {
     /// Splits all faces. Vertices at the same position with equal attributes are one.
     pub fn triangulated(&self) -> Triangulated {
         let first = self.first();
@@ -49,13 +82,16 @@ impl Polygons {
         let mut latest = vec![[NONE; 2]; self.positions.len()];
         let mut done = Triangulated::default();
         for faces in faces.chunk_by(|&a, &b| part(a) == part(b)) {
-            let mut builder = Builder::new(self, part(faces[0]), &mut latest);
+            let part = part(faces[0]);
+            let mut builder = Builder::new(self, part, &mut latest);
             for &face in faces {
                 let face = face as usize;
                 builder.face(first[face] as usize..first[face + 1] as usize, &mut done);
             }
-            if !builder.mesh.triangles.is_empty() {
-                done.meshes.push(builder.mesh);
+            if !builder.triangles.is_empty() {
+                let mesh = builder.mesh();
+                let (name, material) = (self.name.clone(), self.materials[part as usize]);
+                done.meshes.push(Mesh { name, material, ..mesh });
             }
         }
         done
@@ -63,95 +99,105 @@ impl Polygons {
 }
 
 impl<'a> Builder<'a> {
-    fn new(polygons: &'a Polygons, part: u32, latest: &'a mut [[u32; 2]]) -> Self {
-        let mesh = Mesh {
-            name: polygons.name.clone(),
-            material: polygons.materials[part as usize],
-            normals: polygons.normals.as_ref().map(|_| Vec::new()),
-            uvs: vec![Vec::new(); polygons.uvs.len()],
-            colors: polygons.colors.as_ref().map(|_| Vec::new()),
-            ..Mesh::default()
-        };
-        let (before, points, found) = Default::default();
-        Self { polygons, part, mesh, latest, before, points, found }
+    fn new(polygons: &'a Polygons<'_>, part: u32, latest: &'a mut [[u32; 2]]) -> Self {
+        let (before, made_of, triangles, points, found) = Default::default();
+        Self {
+            positions: &polygons.positions,
+            corners: &polygons.corners,
+            normals: polygons.normals.as_ref().map(Values::of),
+            uvs: polygons.uvs.iter().map(Values::of).collect(),
+            colors: polygons.colors.as_ref().map(Values::of),
+            part,
+            latest,
+            before,
+            made_of,
+            triangles,
+            points,
+            found,
+        }
     }
 
     /// Adds the triangles of the face with these corners.
     fn face(&mut self, corners: Range<usize>, done: &mut Triangulated) {
-        let positions = self.polygons.corners[corners.clone()].iter();
+        let (positions, of_face) = (self.positions, &self.corners[corners.clone()]);
         self.points.clear();
-        self.points.extend(positions.map(|&position| self.polygons.positions[position as usize]));
-        let Some(normal) = ears::vector_area(&self.points).try_normalize() else {
+        self.points.extend(of_face.iter().map(|&position| positions[position as usize]));
+        let area = ears::vector_area(&self.points);
+        let square = area.length_squared();
+        if square <= 0.0 || !square.is_finite() {
             done.degenerate += 1;
             return;
-        };
+        }
         let mut found = std::mem::take(&mut self.found);
-        done.crossing += usize::from(!ears::triangulate(&self.points, normal, &mut found));
+        done.crossing += usize::from(!ears::triangulate(&self.points, area, &mut found));
         for triangle in found.drain(..) {
             let triangle = triangle.map(|corner| self.vertex(corners.start + corner as usize));
-            self.mesh.triangles.push(triangle);
+            self.triangles.push(triangle);
         }
         self.found = found;
     }
 
     /// The vertex of a corner, made if there is none yet.
     fn vertex(&mut self, corner: usize) -> u32 {
-        let position = self.polygons.corners[corner] as usize;
+        let position = self.corners[corner] as usize;
         let [part, latest] = self.latest[position];
         let latest = if part == self.part { latest } else { NONE };
-        let known = |vertex: u32| Some(vertex).filter(|&vertex| vertex != NONE);
-        let chain = successors(known(latest), |&vertex| known(self.before[vertex as usize]));
-        if let Some(vertex) = chain.take(COMPARED).find(|&vertex| self.is_like(vertex, corner)) {
-            return vertex;
+        let mut vertex = latest;
+        for _ in 0..COMPARED {
+            if vertex == NONE {
+                break;
+            }
+            if self.are_alike(self.made_of[vertex as usize] as usize, corner) {
+                return vertex;
+            }
+            vertex = self.before[vertex as usize];
         }
         let next = self.before.len() as u32;
         self.before.push(latest);
+        self.made_of.push(corner as u32);
         self.latest[position] = [self.part, next];
-        self.push(corner);
         next
     }
 
-    /// Whether a vertex has the attributes of a corner.
-    fn is_like(&self, vertex: u32, corner: usize) -> bool {
-        let (Self { polygons, mesh, .. }, vertex) = (self, vertex as usize);
-        let normals = mesh.normals.as_ref().zip(polygons.normals.as_ref());
-        let colors = mesh.colors.as_ref().zip(polygons.colors.as_ref());
-        normals.is_none_or(|(made, given)| made[vertex] == given.at(corner))
-            && mesh.uvs.iter().zip(&polygons.uvs).all(|(made, given)| made[vertex] == given.at(corner))
-            && colors.is_none_or(|(made, given)| made[vertex] == given.at(corner))
+    /// Whether two corners have the same attributes.
+    fn are_alike(&self, a: usize, b: usize) -> bool {
+        self.normals.is_none_or(|normals| normals.are_equal(a, b))
+            && self.uvs.iter().all(|uvs| uvs.are_equal(a, b))
+            && self.colors.is_none_or(|colors| colors.are_equal(a, b))
     }
 
-    fn push(&mut self, corner: usize) {
-        let Self { polygons, mesh, .. } = self;
-        mesh.positions.push(polygons.positions[polygons.corners[corner] as usize]);
-        if let (Some(to), Some(from)) = (&mut mesh.normals, &polygons.normals) {
-            to.push(from.at(corner));
-        }
-        for (to, from) in mesh.uvs.iter_mut().zip(&polygons.uvs) {
-            to.push(from.at(corner));
-        }
-        if let (Some(to), Some(from)) = (&mut mesh.colors, &polygons.colors) {
-            to.push(from.at(corner));
+    /// What was built, without name and material.
+    fn mesh(self) -> Mesh {
+        let position = |&corner: &u32| self.positions[self.corners[corner as usize] as usize];
+        Mesh {
+            positions: self.made_of.iter().map(position).collect(),
+            normals: self.normals.map(|normals| normals.gathered(&self.made_of)),
+            uvs: self.uvs.iter().map(|uvs| uvs.gathered(&self.made_of)).collect(),
+            colors: self.colors.map(|colors| colors.gathered(&self.made_of)),
+            triangles: self.triangles,
+            ..Mesh::default()
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::borrow::Cow;
+
     use ajar_scene::Id;
-    use glam::Vec2;
 
     use super::super::{Attribute, Per, Polygons};
     use super::*;
 
     /// Two squares side by side, the second with a material of its own.
-    fn two() -> Polygons {
+    fn two() -> Polygons<'static> {
         Polygons {
             positions: [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]]
                 .map(|[x, y]| Vec3::new(x as f32, y as f32, 0.0))
-                .to_vec(),
-            faces: vec![4, 4],
-            corners: vec![0, 1, 4, 3, 1, 2, 5, 4],
+                .to_vec()
+                .into(),
+            faces: vec![4, 4].into(),
+            corners: vec![0, 1, 4, 3, 1, 2, 5, 4].into(),
             part_of: vec![0, 1],
             is_hole: vec![false; 2],
             materials: vec![None, Some(Id::new(3))],
@@ -172,15 +218,17 @@ mod tests {
         let mut mesh = two();
         mesh.part_of = vec![0, 0];
         assert_eq!(mesh.triangulated().meshes[0].positions.len(), 6);
-        mesh.uvs =
-            vec![Attribute { values: vec![Vec2::ZERO, Vec2::ONE], indices: vec![0, 0, 0, 0, 1, 1, 1, 1] }];
+        mesh.uvs = vec![Attribute {
+            values: vec![Vec2::ZERO, Vec2::ONE].into(),
+            indices: Some(vec![0, 0, 0, 0, 1, 1, 1, 1].into()),
+        }];
         assert_eq!(mesh.triangulated().meshes[0].positions.len(), 8);
-        mesh.uvs[0].indices = vec![0; 8];
+        mesh.uvs[0].indices = Some(vec![0; 8].into());
         assert_eq!(mesh.triangulated().meshes[0].positions.len(), 6);
         // Equal values count, not where they are.
-        mesh.uvs = vec![Attribute { values: vec![Vec2::ONE; 8], indices: (0..8).collect() }; 3];
+        mesh.uvs = vec![Attribute { values: vec![Vec2::ONE; 8].into(), indices: None }; 3];
         assert_eq!(mesh.triangulated().meshes[0].positions.len(), 6);
-        mesh.uvs[2].values[4..].fill(Vec2::ZERO);
+        mesh.uvs[2].values.to_mut()[4..].fill(Vec2::ZERO);
         assert_eq!(mesh.triangulated().meshes[0].positions.len(), 8);
     }
 
@@ -205,15 +253,15 @@ mod tests {
         let corners: Vec<_> = (1..=count).flat_map(|i| [0, i, i + 1]).collect();
         let mesh = Polygons {
             positions: std::iter::once(Vec3::ZERO).chain(rim).collect(),
-            faces: vec![3; count as usize],
+            faces: vec![3; count as usize].into(),
             part_of: vec![0; count as usize],
             is_hole: vec![false; count as usize],
             materials: vec![None],
             uvs: vec![Attribute {
                 values: (0..corners.len()).map(|i| Vec2::splat((i / 3) as f32)).collect(),
-                indices: (0..corners.len() as u32).collect(),
+                indices: None,
             }],
-            corners,
+            corners: corners.into(),
             ..Polygons::default()
         };
         let made = &mesh.triangulated().meshes[0];
@@ -224,7 +272,7 @@ mod tests {
     fn holes_and_faces_without_area_are_left_out() {
         let mut mesh = two();
         mesh.is_hole[0] = true;
-        mesh.corners[4..].fill(1);
+        mesh.corners.to_mut()[4..].fill(1);
         let done = mesh.triangulated();
         assert_eq!((done.meshes.len(), done.degenerate), (0, 1));
     }
@@ -233,12 +281,13 @@ mod tests {
     fn attributes_are_spread_over_corners() {
         let mesh = two();
         let spread = |indices: Option<Vec<u32>>, per, values: usize| {
-            mesh.attribute(vec![0.0; values], indices, per).map(|attribute| attribute.indices)
+            mesh.attribute(vec![0.0; values].into(), indices.map(Cow::Owned), per)
+                .map(|attribute| attribute.indices.map(Cow::into_owned))
         };
-        assert_eq!(spread(None, Per::Face, 2).expect("fits"), [0, 0, 0, 0, 1, 1, 1, 1]);
-        assert_eq!(spread(None, Per::Mesh, 1).expect("fits"), [0; 8]);
-        assert_eq!(spread(None, Per::Position, 6).expect("fits"), mesh.corners);
-        assert_eq!(spread(Some(vec![1, 0]), Per::Face, 2).expect("fits"), [1, 1, 1, 1, 0, 0, 0, 0]);
+        assert_eq!(spread(None, Per::Face, 2).expect("fits"), Some(vec![0, 0, 0, 0, 1, 1, 1, 1]));
+        assert_eq!(spread(None, Per::Mesh, 1).expect("fits"), Some(vec![0; 8]));
+        assert_eq!(spread(None, Per::Position, 6).expect("fits"), Some(mesh.corners.to_vec()));
+        assert_eq!(spread(Some(vec![1, 0]), Per::Face, 2).expect("fits"), Some(vec![1, 1, 1, 1, 0, 0, 0, 0]));
         assert!(spread(None, Per::Corner, 7).is_err());
         assert!(spread(Some(vec![0, 2]), Per::Face, 2).is_err());
     }

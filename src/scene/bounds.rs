@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::{DAffine3, DMat3, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use crate::{Id, Mesh, Node, Scene};
 
@@ -10,14 +10,15 @@ impl Scene {
     /// The smallest box along the world's axes that holds all triangles of visible meshes: lower and upper corner in
     /// metres. `None` without triangles. Vertices that are not finite or that no triangle uses do not count.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let mut corners: HashMap<Id<Mesh>, Vec<Vec3>> = HashMap::new();
+        let mut used: HashMap<Id<Mesh>, Vec<bool>> = HashMap::new();
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for placed in self.placed().iter().filter(|placed| placed.visible) {
             for &id in &placed.node.meshes {
                 let Some(mesh) = self.meshes.get(id) else { continue };
-                // Gathered once: a vertex is a corner of some six triangles, and a mesh may be placed ten thousand times.
-                for corner in corners.entry(id).or_insert_with(|| used_positions(mesh)) {
-                    let point = placed.world.transform_point3(corner.as_dvec3());
+                // Found once: a vertex is a corner of some six triangles, and a mesh may be placed ten thousand times.
+                let used = used.entry(id).or_insert_with(|| used_vertices(mesh));
+                for (position, _) in mesh.positions.iter().zip(used).filter(|(_, used)| **used) {
+                    let point = placed.world.transform_point3(position.as_dvec3());
                     if point.is_finite() {
                         (low, high) = (low.min(point), high.max(point));
                     }
@@ -35,15 +36,15 @@ impl Scene {
     }
 }
 
-/// Positions of the vertices that triangles use, each once.
-fn used_positions(mesh: &Mesh) -> Vec<Vec3> {
+/// Which vertices have triangles.
+fn used_vertices(mesh: &Mesh) -> Vec<bool> {
     let mut used = vec![false; mesh.positions.len()];
     for &index in mesh.triangles.iter().flatten() {
         if let Some(used) = used.get_mut(index as usize) {
             *used = true;
         }
     }
-    mesh.positions.iter().zip(used).filter(|(_, used)| *used).map(|(position, _)| *position).collect()
+    used
 }
 
 /// The rigid motion to `position` that turns −Z along `forward` and +Y as near to `up` as it can; where `up` lies along

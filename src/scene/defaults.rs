@@ -69,8 +69,8 @@ impl Scene {
             }
         }
         // A flux of π L A through a sphere of area 4π R².
-        let (low, high) = self.bounds().unwrap_or((DVec3::ZERO, DVec3::ZERO));
-        intensity > 0.0 && intensity >= LEAST_ILLUMINANCE * (high - low).length_squared()
+        let square = || self.bounds().map_or(0.0, |(low, high)| (high - low).length_squared());
+        intensity > 0.0 && intensity >= LEAST_ILLUMINANCE * square()
     }
 
     /// Adds a [`framing_camera`] unless there is a camera, and says so.

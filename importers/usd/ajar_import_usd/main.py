@@ -6,8 +6,9 @@ import argparse
 import json
 import os
 import sys
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from .report import Report, StageError
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 EXTENSIONS = ["usd", "usda", "usdc", "usdz"]
 HEADS = [b"#usda", b"PXR-USDC"]
+# Bytes that a user's pipe may hold on Linux unless told otherwise.
+PIPE = 1 << 20
 
 
 def arguments() -> argparse.Namespace:
@@ -54,6 +57,14 @@ def convert(args: argparse.Namespace, report: Report) -> Document:
     return document
 
 
+def widen(pipe: TextIO) -> None:
+    """Lets a pipe hold more, where the system can: writer and reader wait for each other less often."""
+    with suppress(ImportError, AttributeError, OSError):
+        import fcntl
+
+        fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, PIPE)
+
+
 def main() -> None:
     """The program."""
     args = arguments()
@@ -65,6 +76,8 @@ def main() -> None:
     os.environ.pop("PXR_AR_DEFAULT_SEARCH_PATH", None)
     # Bindings of prims that do not apply the schema act all the same: no warning for each.
     os.environ["USD_SHADE_WARN_ON_MISSING_MATERIAL_BINDING_API"] = "0"
+    # Its helpers would wait for more work in a loop, and take a core from who reads what is printed here.
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
     # That settings are set needs no banner.
     os.environ["TF_ENV_SETTING_ALERTS_ENABLED"] = "0"
     sys.setrecursionlimit(20_000)
@@ -83,6 +96,7 @@ def main() -> None:
     except (MemoryError, RecursionError) as error:
         report.fail(StageError(f"the stage is too large: {type(error).__name__}", cause="resource"))
         sys.exit(1)
+    widen(sys.stdout)
     document.write(sys.stdout.buffer)
     sys.stdout.buffer.flush()
     # Taking usd-core down in good order would take as long as reading a large stage.
