@@ -10,6 +10,7 @@ import sys
 import time
 from pathlib import Path
 
+import drjit
 import mitsuba as mi
 import numpy as np
 
@@ -55,6 +56,7 @@ def load(folder, scene):
 def main():
     folder, variant, kind, seconds, prefix = Path(sys.argv[1]), *sys.argv[2:]
     mi.set_variant(variant)
+    drjit.set_thread_count(1)
     scene = json.loads((folder / "scene.json").read_text())
     began, total, passes = time.process_time(), 0.0, 0
     loaded = load(folder, scene)
