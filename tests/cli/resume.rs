@@ -3,11 +3,12 @@
 use std::{collections::BTreeMap, fs};
 
 use exr::prelude::*;
+use serde_json::Value;
 
 use crate::bench::Bench;
 
-/// Every integrator, in a room where `ajar` runs chains.
-const INTEGRATORS: [&str; 4] = ["path", "bdpt", "mlt", "ajar"];
+/// Every integrator.
+pub const INTEGRATORS: [&str; 4] = ["path", "bdpt", "mlt", "ajar"];
 
 /// What an image says that must not depend on how it was made: bits of all channels, and attributes but times.
 #[derive(Debug, PartialEq)]
@@ -87,9 +88,19 @@ fn merged_shards_are_the_unsplit_render_for_every_integrator() {
         assert!(content(&bench, "whole.exr") == content(&bench, "merged.exr"), "{integrator}");
         let shard = content(&bench, "part1.exr");
         assert!(shard.attributes["ajar:shard"].contains("1/3"));
+        let stats: Value = serde_json::from_slice(&fs::read(bench.path("whole.json")).unwrap()).unwrap();
+        let detail = |name: &str| stats["details"][name].as_f64();
         if integrator == "ajar" {
-            let stats = fs::read_to_string(bench.path("whole.json")).unwrap();
-            assert!(stats.contains("mutations_per_sample"), "no chains: the scene tests nothing");
+            assert!(detail("mutations_per_sample") > Some(0.0), "no chains: the scene tests nothing");
+        }
+        if ["mlt", "ajar"].contains(&integrator) {
+            // How good the seeds were.
+            assert!(
+                detail("seed_candidates") > Some(100.0) && detail("empty_rounds") == Some(0.0),
+                "{stats}"
+            );
+            assert!(detail("heaviest_thousandth_of_candidates") > Some(0.0), "{stats}");
+            assert!(detail("chains") > Some(8.0) && detail("lost_seeds") < Some(2.0), "{stats}");
         }
     }
 }

@@ -8,7 +8,10 @@ use std::{
 
 use serde_json::Value;
 
-use crate::{bench::Bench, resume::content};
+use crate::{
+    bench::Bench,
+    resume::{INTEGRATORS, content},
+};
 
 /// A render that takes ten minutes if nobody stops it, and its messages.
 struct Render {
@@ -104,17 +107,18 @@ fn a_snapshot_is_written_and_the_render_goes_on() {
 
 #[test]
 fn an_interrupted_render_resumes_where_it_was() {
-    for signal in ["-INT", "-TERM"] {
+    for (integrator, signal) in INTEGRATORS.into_iter().flat_map(|it| [(it, "-INT"), (it, "-TERM")]) {
         let bench = Bench::new();
-        let mut render = Render::start(&bench, "--stats-json stats.json --checkpoint saved");
+        let how = format!("--integrator {integrator} --stats-json stats.json");
+        let mut render = Render::start(&bench, &format!("{how} --checkpoint saved"));
         render.wait_for("round ");
         render.signal(signal);
-        assert_eq!(render.end(), Some(5), "{signal}");
+        assert_eq!(render.end(), Some(5), "{integrator} {signal}");
         let rounds = stats(&bench)["rounds"].as_u64().unwrap() + 2;
-        let again = format!("render kitchen/scene.toml --rounds {rounds}");
+        let again = format!("render kitchen/scene.toml --integrator {integrator} --rounds {rounds}");
         bench.run(&format!("{again} -o resumed.exr --resume saved")).exits(0);
         bench.run(&format!("{again} -o whole.exr")).exits(0);
-        assert!(content(&bench, "resumed.exr") == content(&bench, "whole.exr"), "{signal}");
+        assert!(content(&bench, "resumed.exr") == content(&bench, "whole.exr"), "{integrator} {signal}");
     }
 }
 

@@ -84,7 +84,7 @@ impl<'a> Chains<'a> {
             for stats in stats {
                 match stats {
                     Some(stats) => totals.add_chain(&stats, self.length),
-                    None => totals.lost_seeds += 1,
+                    None => totals.lost_seeds += u64::from(!self.cx.cancelled()),
                 }
             }
             if let Some(learner) = learner {
@@ -97,6 +97,8 @@ impl<'a> Chains<'a> {
 
 /// Share of the heaviest thousandth of candidates that is worth a remark.
 const UNEVEN: f64 = 0.3;
+/// Share of seeds lost to rounding that may darken the image.
+const LOST: f64 = 1e-3;
 
 /// What chains did.
 #[derive(Clone, Debug, Default)]
@@ -111,6 +113,8 @@ pub struct Totals {
     pub stuck: u64,
     /// Rounds in which nothing was found to begin with.
     pub empty_rounds: u64,
+    /// Samples that looked for something in those.
+    pub samples_in_vain: u64,
     /// What they began from, where bidirectional samples found it.
     pub pool: Pool,
     /// What chains learned, if they were asked to.
@@ -130,6 +134,7 @@ impl Totals {
         self.lost_seeds += other.lost_seeds;
         self.stuck += other.stuck;
         self.empty_rounds += other.empty_rounds;
+        self.samples_in_vain += other.samples_in_vain;
         self.pool.add(&other.pool);
     }
 
@@ -178,8 +183,15 @@ impl Totals {
         }
         if self.empty_rounds > 0 {
             report.warnings.push(format!(
-                "{} rounds found no path that carries light to the camera; what they would have shown is black",
-                self.empty_rounds
+                "{} rounds found no path that carries light to the camera among {} samples; what they would have \
+                 shown is black",
+                self.empty_rounds, self.samples_in_vain
+            ));
+        }
+        if self.lost_seeds as f64 > LOST * self.chains as f64 {
+            report.warnings.push(format!(
+                "rounding lost the start of {} of {} chains: what they would have shown is missing",
+                self.lost_seeds, self.chains
             ));
         }
         if not_finite > 0 {

@@ -16,7 +16,7 @@ use super::{
     path::Space,
     pilot::{Plan, plan},
     plain::PlainChains,
-    seeds::{Bootstrap, Candidate},
+    seeds::{Bootstrap, Candidate, Pool},
 };
 use crate::{Context, Integrator, Report, Rounds, bdpt::MAX_VERTICES, path::PathTracer};
 
@@ -50,9 +50,39 @@ impl Integrator for Ajar {
             return PathTracer.prepare(cx);
         }
         let chains = PlainChains::new(cx);
-        let Some(plan) = plan(&chains, self.always) else { return PathTracer.prepare(cx) };
+        let Some(plan) = plan(&chains, self.always) else {
+            return Box::new(PathsAlone { paths: PathTracer.prepare(cx), dark_after: chains.dark_after });
+        };
         let (space, mutations, table) = (chains.space, chains.mutations, chains.table);
         Box::new(AjarRounds { cx, space, plan, mutations, table, totals: Mutex::default() })
+    }
+}
+
+/// Path tracing where chains would not pay.
+struct PathsAlone<'a> {
+    paths: Box<dyn Rounds + 'a>,
+    /// Bidirectional samples that looked for light in vain.
+    dark_after: Option<u32>,
+}
+
+impl Rounds for PathsAlone<'_> {
+    fn scale(&self) -> f64 {
+        self.paths.scale()
+    }
+
+    fn render(&self, round: u32, film: &RoundFilm) {
+        self.paths.render(round, film);
+    }
+
+    fn report(&self) -> Report {
+        let mut report = self.paths.report();
+        report.lines.push(match self.dark_after {
+            Some(samples) => {
+                format!("{samples} bidirectional samples found no light on any surface that is seen")
+            }
+            None => "path tracing alone: chains would not pay here".into(),
+        });
+        report
     }
 }
 
@@ -63,6 +93,12 @@ struct AjarRounds<'a> {
     mutations: Vec<&'static dyn Mutation>,
     table: Table,
     totals: Mutex<Totals>,
+}
+
+impl AjarRounds<'_> {
+    fn note(&self, totals: &Totals) {
+        self.totals.lock().unwrap_or_else(PoisonError::into_inner).add(totals);
+    }
 }
 
 /// Where a chain begins.
@@ -91,18 +127,23 @@ impl Rounds for AjarRounds<'_> {
         let left = base::render(&split, settings, round, |pixel, value| film.add(pixel, value));
         let bootstrap = Bootstrap { space: self.space, seed: settings.seed, round, samples: beside };
         let found = bootstrap.candidates_worth(|x| split.seed_beside(x));
-        let total = left.iter().sum::<f64>() / samples
-            + found.iter().map(|c| c.weight).sum::<f64>() / f64::from(beside);
+        if self.cx.cancelled() {
+            return;
+        }
+        let of_base = left.iter().map(|left| left / samples);
+        let pool = Pool::of(of_base.chain(found.iter().map(|c| c.weight / f64::from(beside))));
+        if pool.total <= 0.0 {
+            let samples_in_vain = samples as u64 + u64::from(beside);
+            self.note(&Totals { empty_rounds: 1, samples_in_vain, ..Totals::default() });
+            return;
+        }
         let mutations = self.plan.mutations_per_sample * samples;
         let length = settings.metropolis.chain_length;
         let count = (mutations / f64::from(length)).ceil() as usize;
-        if total <= 0.0 || self.cx.cancelled() {
-            return;
-        }
         let u = Rng::new(settings.seed, Purpose::Resampling, round, 0).f64();
-        let step = total / count as f64;
+        let step = pool.total / count as f64;
         let seeds = spread((&left, 1.0 / samples), (&found, 1.0 / f64::from(beside)), step, u);
-        let step = total * pixels as f64 / (seeds.len() as f64 * f64::from(length));
+        let step = pool.total * pixels as f64 / (seeds.len() as f64 * f64::from(length));
         let (mutations, table) = (self.mutations.as_slice(), &self.table);
         let kernel = Kernel { space: self.space, mutations, table, target: &split };
         let totals = Chains { cx: self.cx, kernel, round, length, learning: false }.run(
@@ -117,7 +158,7 @@ impl Rounds for AjarRounds<'_> {
                 }
             },
         );
-        self.totals.lock().unwrap_or_else(PoisonError::into_inner).add(&totals);
+        self.note(&Totals { pool, ..totals });
     }
 
     fn report(&self) -> Report {

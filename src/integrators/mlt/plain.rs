@@ -79,6 +79,8 @@ pub struct PlainChains<'a> {
     pub table: Table,
     /// Fewest bidirectional samples of a round.
     least_samples: u32,
+    /// Bidirectional samples that found no light, if the search for it was given up.
+    pub dark_after: Option<u32>,
 }
 
 impl<'a> PlainChains<'a> {
@@ -88,8 +90,8 @@ impl<'a> PlainChains<'a> {
         let (mutations, usual) = mutations(&cx.settings.metropolis.weights);
         let choice = cx.settings.metropolis.choice;
         let table = if choice == Choice::Fixed { usual.clone() } else { usual.equal() };
-        let mut chains = Self { cx, space, mutations, table, least_samples: LEAST_SAMPLES };
-        chains.least_samples = chains.samples_that_find();
+        let mut chains = Self { cx, space, mutations, table, least_samples: LEAST_SAMPLES, dark_after: None };
+        chains.look_for_light();
         if choice == Choice::Learned {
             let count = (space.window.pixels() as u64).clamp(1 << 17, 1 << 21);
             let learned = chains
@@ -100,17 +102,20 @@ impl<'a> PlainChains<'a> {
         chains
     }
 
-    /// How many bidirectional samples it takes to find a few paths that carry light. It depends on world, settings and seed
-    /// alone, so that rounds stay unbiased.
-    fn samples_that_find(&self) -> u32 {
-        let mut samples = LEAST_SAMPLES;
+    /// Finds how many bidirectional samples it takes to find a few paths that carry light. It depends on world, settings and
+    /// seed alone, so that rounds stay unbiased.
+    fn look_for_light(&mut self) {
+        let found = |samples| self.bootstrap(LEARNING_ROUND, samples).candidates().len();
+        let (mut samples, mut last) = (LEAST_SAMPLES, 0);
         while samples < MOST_SAMPLES {
-            if self.bootstrap(LEARNING_ROUND, samples).candidates().len() >= FEW_CANDIDATES {
+            last = found(samples);
+            if last >= FEW_CANDIDATES {
                 break;
             }
             samples *= 4;
         }
-        samples
+        let dark = last == 0 && found(samples) == 0 && !self.cx.cancelled();
+        (self.least_samples, self.dark_after) = (samples, dark.then_some(samples));
     }
 
     /// A usual run of chains as long as the settings say.
@@ -136,9 +141,9 @@ impl<'a> PlainChains<'a> {
             candidate.weight /= relative_to.map_or(1.0, |brightness| brightness[candidate.pixel as usize]);
         }
         if candidates.is_empty() {
-            return Totals { empty_rounds: 1, ..Totals::default() };
+            return Totals { empty_rounds: 1, samples_in_vain: samples.into(), ..Totals::default() };
         }
-        let pool = Pool::of(&candidates);
+        let pool = Pool::of(candidates.iter().map(|c| c.weight));
         let brightness = candidates.iter().map(|c| c.weight).sum::<f64>() / f64::from(samples);
         let mut rng = Rng::new(self.cx.settings.seed, Purpose::Resampling, round, 0);
         let seeds = resample(&mut candidates, count, &mut rng);

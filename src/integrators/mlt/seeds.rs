@@ -158,10 +158,10 @@ fn morton(raster: glam::DVec2) -> u32 {
     spread(raster.x as u32 & 0xFFFF) | spread(raster.y as u32 & 0xFFFF) << 1
 }
 
-/// How evenly candidates share what they carry: a few heavy ones make a noisy round.
+/// How evenly the places that chains may start from share what they carry: a few heavy ones make a noisy round.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pool {
-    /// Candidates.
+    /// Paths of bidirectional samples, and pixels of the base that left something to chains.
     pub size: u64,
     /// What all of them carry.
     pub total: f64,
@@ -170,9 +170,9 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// That of `candidates`.
-    pub fn of(candidates: &[Candidate]) -> Self {
-        let mut weights: Vec<f64> = candidates.iter().map(|c| c.weight).collect();
+    /// Of the weights of all of them.
+    pub fn of(weights: impl Iterator<Item = f64>) -> Self {
+        let mut weights: Vec<f64> = weights.filter(|weight| *weight > 0.0).collect();
         let heavy = weights.len().div_ceil(1000);
         if heavy < weights.len() {
             weights.select_nth_unstable_by(heavy, |a, b| b.total_cmp(a));

@@ -4,8 +4,9 @@
 mod common;
 
 use ajar_integrators::{
+    Metropolis, Settings,
     bdpt::Bdpt,
-    mlt::{Ajar, Mlt},
+    mlt::{Ajar, Mlt, choice::Choice, lens_subpaths::Spread},
     path::PathTracer,
 };
 use common::{
@@ -35,5 +36,24 @@ fn bidirectional_path_tracing_and_metropolis_light_transport() {
         let ajar = Ajar { always: true };
         let ajar = render_blocks(&world, &ajar, &settings(&world, 5, scene.depth, 8), 24);
         assert_blocks_agree(&format!("{}, ajar", scene.name), &bdpt, &ajar);
+    }
+}
+
+/// What `render.mutation_choice` and `render.lens_subpaths` offer besides the usual.
+#[test]
+fn other_choices_of_mutations_show_the_same() {
+    let usual = Metropolis::default();
+    let ways = [
+        ("learned", Metropolis { choice: Choice::Learned, ..usual.clone() }),
+        ("equal", Metropolis { choice: Choice::Equal, ..usual.clone() }),
+        ("list", Metropolis { lens_subpaths: Spread::List, ..usual }),
+    ];
+    let scene = SCENES.iter().find(|scene| scene.name == "mirror and glass").unwrap();
+    let world = (scene.world)();
+    let bdpt = render_blocks(&world, &Bdpt, &settings(&world, 3, scene.depth, 12), 24);
+    for (name, metropolis) in ways {
+        let settings = Settings { metropolis, ..settings(&world, 6, scene.depth, 32) };
+        let mlt = render_blocks(&world, &Mlt, &settings, 24);
+        assert_blocks_agree(name, &bdpt, &mlt);
     }
 }

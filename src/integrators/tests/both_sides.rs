@@ -17,11 +17,11 @@ use ajar_render::{
 };
 use common::{
     scenes::{IMAGES, SCENES},
-    settings,
+    settings, sized,
 };
 use glam::DVec3;
 
-const SAMPLES: u64 = 4000;
+const SAMPLES: usize = 4000;
 /// Edges of the longest path without Russian roulette.
 const MAX_EDGES: usize = 5;
 
@@ -132,7 +132,7 @@ fn count(world: &World, depth: usize) -> Count {
     let space = Space::new(world, settings.window, depth);
     let (mut tracer, mut x) = (Tracer::new(world, depth, 1.0), Path::with_capacity());
     let mut count = Count::default();
-    for sample in 0..SAMPLES {
+    for sample in 0..sized(SAMPLES) as u64 {
         let mut rng = Rng::new(8, Purpose::Test, 0, sample);
         let (raster, lens) = (space.raster(rng.pair()), rng.pair());
         tracer.sample(raster, lens, &mut rng, |found| count.compare(&space, found, &mut x));

@@ -3,7 +3,7 @@
 
 mod common;
 
-use ajar_integrators::{Settings, Window, integrators, path::PathTracer};
+use ajar_integrators::{Integrator, Settings, Window, integrators, mlt::Ajar, path::PathTracer};
 use ajar_render::World;
 use ajar_scene::{Input, Material};
 use common::{Builder, pinhole, render, scenes::IMAGES, settings, shapes};
@@ -25,14 +25,19 @@ fn world() -> World {
     b.world(24)
 }
 
+/// All of them, the default also with chains where it would do without.
+fn every_integrator() -> impl Iterator<Item = &'static dyn Integrator> {
+    integrators().iter().copied().chain([&Ajar { always: true } as &dyn Integrator])
+}
+
 #[test]
 fn thread_counts_give_the_same_bits() {
     for world in [world(), (IMAGES.world)()] {
         let settings = settings(&world, 7, 8, 4);
-        for integrator in integrators() {
+        for integrator in every_integrator() {
             let films = [1, 2, 7].map(|threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                pool.install(|| render(&world, *integrator, &settings, 3))
+                pool.install(|| render(&world, integrator, &settings, 3))
             });
             assert!(films.iter().all(|film| *film == films[0]), "{}", integrator.name());
         }
@@ -42,8 +47,8 @@ fn thread_counts_give_the_same_bits() {
 #[test]
 fn seeds_and_rounds_differ() {
     let world = world();
-    for integrator in integrators() {
-        let film = |seed, rounds| render(&world, *integrator, &settings(&world, seed, 8, 1), rounds);
+    for integrator in every_integrator() {
+        let film = |seed, rounds| render(&world, integrator, &settings(&world, seed, 8, 1), rounds);
         assert_ne!(film(1, 1), film(2, 1), "{}", integrator.name());
         let two = film(1, 2);
         let variances: f64 = (0..two.pixels()).map(|p| two.variance_of_mean(p).x).sum();

@@ -14,13 +14,13 @@ use ajar_scene::{Id, Input, LightKind, Material, Projection};
 use common::{
     Builder, pinhole,
     scenes::{plaster, sky},
-    shapes,
+    shapes, sized,
 };
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 const MAX_EDGES: usize = 5;
-const BATCHES: u64 = 64;
+const BATCHES: usize = 64;
 const SAMPLES: u64 = 16_000;
 /// Relative standard error that a technique may have, by the number of edges: four of them are the faults that show.
 const LARGEST_ERROR: [f64; MAX_EDGES + 1] = [0.0, 0.0, 0.01, 0.03, 0.06, 0.1];
@@ -81,7 +81,7 @@ fn estimate(batches: &[Sums], value: impl Fn(&Sums) -> f64) -> (f64, f64) {
 /// Asserts that all techniques from s = `first` on find the same light, as far as can be told.
 fn assert_same(name: &str, b: Builder, first: usize) {
     let world = b.world(16);
-    let batches: Vec<Sums> = (0..BATCHES).into_par_iter().map(|i| batch(&world, i)).collect();
+    let batches: Vec<Sums> = (0..sized(BATCHES) as u64).into_par_iter().map(|i| batch(&world, i)).collect();
     for (k, largest) in LARGEST_ERROR.into_iter().enumerate().skip(2) {
         let (reference, error) = estimate(&batches, |b| b.weighted[k]);
         assert!(reference > 0.0, "{name}, {k} edges");

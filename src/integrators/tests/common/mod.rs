@@ -6,10 +6,17 @@ pub mod scenes;
 pub mod shapes;
 pub mod stationarity;
 
-use ajar_integrators::{Context, Integrator, Settings, Window, brightness};
+use ajar_integrators::{
+    Context, Integrator, Settings, Window, brightness,
+    mlt::{
+        path::{Path, Space},
+        seeds::{Bootstrap, resample},
+    },
+};
 use ajar_render::{
     World,
     film::Film,
+    rng::{Purpose, Rng},
     world::{PrepareOptions, prepare},
 };
 use ajar_scene::{
@@ -104,6 +111,27 @@ fn look(position: DVec3, target: DVec3) -> DAffine3 {
 pub fn settings(world: &World, seed: u64, max_depth: usize, samples_per_round: u32) -> Settings {
     let window = Window { x0: 0, y0: 0, x1: world.camera.width, y1: world.camera.height };
     Settings { seed, max_depth, samples_per_round, window, metropolis: Default::default() }
+}
+
+/// Paths in proportion to their contribution.
+pub fn seeds(world: &World, depth: usize, count: usize) -> (Space<'_>, Vec<Path>) {
+    let settings = settings(world, 11, depth, 1);
+    let space = Space::new(world, settings.window, depth);
+    let bootstrap = Bootstrap { space, seed: 11, round: 0, samples: 4 * count as u32 };
+    let mut candidates = bootstrap.candidates();
+    let chosen = resample(&mut candidates, count, &mut Rng::new(11, Purpose::Test, 0, 0));
+    let mut tracer = bootstrap.tracer();
+    let paths = chosen.iter().filter_map(|&i| {
+        let mut path = Path::with_capacity();
+        bootstrap.replay(&candidates[i as usize], &mut tracer, &mut path)?;
+        Some(path)
+    });
+    (space, paths.collect())
+}
+
+/// So many in continuous integration, fifty times as many where `AJAR_RELEASE_TESTS` is set.
+pub fn sized(count: usize) -> usize {
+    if std::env::var_os("AJAR_RELEASE_TESTS").is_some() { 50 * count } else { count }
 }
 
 /// Renders `rounds` rounds.

@@ -103,11 +103,11 @@ fn weigh(bootstrap: &Bootstrap<'_>, candidates: &mut [Candidate], target: &dyn T
     );
 }
 
-/// Runs `mutations` with equal chances for `steps` steps from each of `seeds` seeds.
+/// Runs `mutations`, chosen by `table`, for `steps` steps from each of `seeds` seeds.
 pub fn drift(
     world: &World,
     settings: &Settings,
-    mutations: &[&dyn Mutation],
+    (mutations, table): (&[&dyn Mutation], &Table),
     target: &dyn Target,
     steps: u32,
     seeds: usize,
@@ -117,8 +117,7 @@ pub fn drift(
     let mut candidates = bootstrap.candidates();
     weigh(&bootstrap, &mut candidates, target);
     let chosen = resample(&mut candidates, seeds, &mut Rng::new(settings.seed, Purpose::Test, 0, 1));
-    let table = Table::uniform(&vec![1.0; mutations.len()]);
-    let kernel = Kernel { space, mutations, table: &table, target };
+    let kernel = Kernel { space, mutations, table, target };
     let stream = |i: usize| Rng::new(settings.seed, Purpose::Chain, steps, i as u64);
     let mut by_sample: Vec<(u32, usize)> =
         chosen.iter().enumerate().map(|(i, &seed)| (candidates[seed as usize].sample, i)).collect();
