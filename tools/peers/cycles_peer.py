@@ -1,6 +1,7 @@
-"""A glTF file by Blender and Cycles, from a Python that has bpy: cycles_peer.py FILE OUT.exr SIZE SPP [CAMERA…]
+"""A glTF file by Blender and Cycles, from a Python that has bpy: cycles_peer.py FILE OUT.exr SIZE SPP ASKED
 
-Without camera it frames everything and prints the camera as JSON, in the axes of glTF; with one it renders.
+ASKED is JSON: sky, sun, angle, direction and camera, in the axes of glTF; without camera, one is made that sees all.
+Prints Blender's version and the camera.
 """
 
 import json
@@ -14,16 +15,18 @@ YFOV = math.radians(35)
 
 
 def load(file: str) -> None:
-    """The file alone, without its own cameras and lights."""
+    """The file alone at the start of its animations, without its own cameras and lights."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=file)
+    bpy.context.scene.frame_set(0)
     for thing in [o for o in bpy.data.objects if o.type in {"CAMERA", "LIGHT"}]:
         bpy.data.objects.remove(thing)
 
 
 def frame() -> dict[str, list[float]]:
     """A camera a little above and beside the front that sees all."""
-    corners = [o.matrix_world @ Vector(c) for o in bpy.data.objects if o.type == "MESH" for c in o.bound_box]
+    drawn = bpy.context.evaluated_depsgraph_get().object_instances
+    corners = [i.matrix_world @ Vector(c) for i in drawn if i.object.type == "MESH" for c in i.object.bound_box]
     low = Vector(map(min, *corners))
     high = Vector(map(max, *corners))
     centre, radius = (low + high) / 2, (high - low).length / 2
@@ -42,15 +45,15 @@ def from_gltf(v: list[float]) -> Vector:
     return Vector((v[0], -v[2], v[1]))
 
 
-def light(sky: float, sun: float, direction: list[float]) -> None:
-    """A uniform sky of this radiance and a sun of this illuminance."""
+def light(sky: float, sun: float, angle: float, direction: list[float]) -> None:
+    """A uniform sky of this radiance and a sun of this illuminance, so many degrees wide."""
     world = bpy.data.worlds.new("sky")
     world.use_nodes = True
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (1, 1, 1, 1)
     world.node_tree.nodes["Background"].inputs["Strength"].default_value = sky
     bpy.context.scene.world = world
     lamp = bpy.data.lights.new("sun", "SUN")
-    lamp.energy, lamp.angle = sun, math.radians(0.53)
+    lamp.energy, lamp.angle = sun, math.radians(angle)
     thing = bpy.data.objects.new("sun", lamp)
     thing.rotation_euler = from_gltf(direction).to_track_quat("-Z", "Y").to_euler()
     bpy.context.collection.objects.link(thing)
@@ -84,15 +87,14 @@ def render(out: str, size: int, spp: int, camera: dict[str, list[float]]) -> Non
 
 
 def main() -> None:
-    """Answers with the camera, or renders."""
-    file, out, size, spp, *rest = sys.argv[1:]
+    """Renders, and says how."""
+    file, out, size, spp, asked = sys.argv[1:]
     load(file)
-    if not rest:
-        print("camera", json.dumps(frame()))
-        return
-    asked = json.loads(rest[0])
-    light(asked["sky"], asked["sun"], asked["direction"])
-    render(out, int(size), int(spp), asked["camera"])
+    wanted = json.loads(asked)
+    camera = wanted.get("camera") or frame()
+    light(wanted["sky"], wanted["sun"], wanted["angle"], wanted["direction"])
+    render(out, int(size), int(spp), camera)
+    print("made", json.dumps({"blender": bpy.app.version_string, "camera": camera}))
 
 
 if __name__ == "__main__":

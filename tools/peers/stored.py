@@ -34,7 +34,7 @@ def cycles(python: str, scene: Path) -> None:
     """One image as Blender writes it; the lamp is the only light."""
     camera = json.loads((scene / "scene.json").read_text())["camera"]
     placed = {"position": camera["origin"], "target": camera["target"], "yfov": camera["fov"]}
-    asked = json.dumps({"sky": 0, "sun": 0, "direction": [0, -1, 0], "camera": placed})
+    asked = json.dumps({"sky": 0, "sun": 0, "angle": 0, "direction": [0, -1, 0], "camera": placed})
     command = [python, HERE / "cycles_peer.py", scene / "scene.glb", FOLDER / "cornell-cycles.exr", str(SIZE)]
     subprocess.run([*command, str(SPP * PASSES), asked], check=True)
 
