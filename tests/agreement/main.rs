@@ -21,6 +21,9 @@ use blocks::{Blocks, HEIGHT, WIDTH};
 /// 32 rounds, and some light comes seldom and bright, which makes it more.
 const LIMIT: f64 = 5.0;
 
+/// Largest typical error, relative: beyond it a difference could hide in noise.
+const NOISE: f64 = 0.05;
+
 /// A scene of the repository: a folder with a `scene.toml`, or a file in it.
 fn world(scene: &str) -> World {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
@@ -54,6 +57,7 @@ fn check(scene: &str, path: u32, bdpt: u32) {
     let (worst, error) = a.compare(&b);
     println!("{scene}: largest z {worst:.2}, typical error {:.2} %", error * 100.0);
     assert!(worst < LIMIT, "{scene}: largest z {worst:.2}");
+    assert!(error < NOISE, "{scene}: {:.2} % of noise", error * 100.0);
 }
 
 #[test]

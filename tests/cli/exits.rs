@@ -69,6 +69,12 @@ fn mistakes_in_a_scene_file_have_line_column_and_advice() {
         ("spp = 4", "max_depth = 5000", ["scene.toml:23:13: error: render.max_depth: ", "5000"]),
         ("spp = 4", "mutations = { lans = 1 }", ["scene.toml:23:", "lens"]),
         ("spp = 4", "mutations = { lens = -1 }", ["scene.toml:23:22: error: render.mutations.lens: ", "-1"]),
+        (
+            "spp = 4",
+            "mutations = { bidirectional = 0, lens = 0, caustic = 0, multi-chain = 0, window = 0, technique = 0, \
+             eye-chain = 0, light-chain = 0, lens-subpath = 0, manifold = 0 }",
+            ["scene.toml:23:13: error: render.mutations: ", "switched off"],
+        ),
         ("spp = 4", "chain_length = 0", ["scene.toml:23:16: error: render.chain_length: ", "1"]),
         ("spp = 4", "mutation_choice = \"best\"", ["scene.toml:23:", "learned"]),
         ("spp = 4", "[output]\ntone_map = \"fimlic\"", ["scene.toml:24:12: error: output.tone_map: ", "agx"]),

@@ -30,6 +30,9 @@ static METER: meter::Meter = meter::Meter;
 /// Bytes that an input may take: what the house promises for hostile files.
 const MOST_BYTES: usize = 512 << 20;
 
+/// Processor time that an input may take, likewise.
+const LONGEST: Duration = Duration::from_secs(5);
+
 /// The meter counts all threads, so formats take turns.
 static TURN: Mutex<()> = Mutex::new(());
 
@@ -80,12 +83,16 @@ fn survives(target: Target) {
         let input = Mutator::new(number).mutate(target, &seeds);
         watch.begin(number);
         let (start, before) = (Instant::now(), meter::reset());
+        let worked = meter::processor_time();
         let found = catch_unwind(AssertUnwindSafe(|| laboratory.examine(target, &input)))
             .unwrap_or_else(|_| Err("it panics".into()));
         let (time, bytes) = (start.elapsed(), meter::most() - before);
         let found = found.and_then(|fate| {
-            let allowed = bytes <= MOST_BYTES;
-            if allowed { Ok(fate) } else { Err(format!("it takes {} MiB", bytes >> 20)) }
+            let spent = meter::processor_time().zip(worked).map_or(Duration::ZERO, |(now, then)| now - then);
+            if bytes > MOST_BYTES {
+                return Err(format!("it takes {} MiB", bytes >> 20));
+            }
+            if spent > LONGEST { Err(format!("it takes {spent:?} of a processor")) } else { Ok(fate) }
         });
         match found {
             Ok(fate) => tally.count(number, fate, time, bytes),

@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 
 SCENES = Path(__file__).parents[2] / "scenes"
-ROUNDS = {"path": 2, "bdpt": 1, "mlt": 8}
+ROUNDS = {"path": 2, "bdpt": 1, "mlt": 8, "ajar": 8}
 
 
 def seconds(ajar, *arguments):

@@ -65,13 +65,25 @@ impl Layered {
         if metallic > 0.0 { reflectance + self.metal(facet) * metallic } else { reflectance }
     }
 
-    /// Averages over the hemisphere of what metal and, under a film, dielectric reflect; 0 of metal where there is none.
+    /// What the metal reflects; 0 where there is none, since films take long.
+    fn metal_if_any(&self, facet: f64) -> Rgb {
+        if self.metallic() > 0.0 { self.metal(facet) } else { Rgb::ZERO }
+    }
+
+    /// Likewise the dielectric.
+    fn dielectric_if_any(&self, facet: f64) -> Rgb {
+        if self.opaque + self.transmitting > 0.0 { self.dielectric(facet) } else { Rgb::ZERO }
+    }
+
+    /// Averages over the hemisphere of what metal and, under a film, dielectric reflect.
     pub fn mean_reflectance(&self) -> [Rgb; 2] {
         if self.film.is_none() {
             return [self.base.map(schlick_average), Rgb::ZERO];
         }
-        let metal = |cos| if self.metallic() > 0.0 { self.metal(cos) } else { Rgb::ZERO };
-        [mean(FILM_COSINES, metal), mean(FILM_COSINES, |cos| self.dielectric(cos))]
+        [
+            mean(FILM_COSINES, |cos| self.metal_if_any(cos)),
+            mean(FILM_COSINES, |cos| self.dielectric_if_any(cos)),
+        ]
     }
 
     /// Single-scattering albedos of metal and opaque dielectric under a film for `w` with z > 0, by a small fixed rule on
@@ -80,9 +92,8 @@ impl Layered {
         const RADII: [f64; 2] = [0.45, 0.85];
         const AXES: u32 = 4;
         self.film?;
-        let metal = |facet| if self.metallic() > 0.0 { self.metal(facet) } else { Rgb::ZERO };
         if self.ggx.is_smooth() {
-            return Some([metal(w.z), self.dielectric(w.z)]);
+            return Some([self.metal_if_any(w.z), self.dielectric_if_any(w.z)]);
         }
         let mut sums = [Rgb::ZERO; 2];
         for i in 0..AXES {
@@ -95,8 +106,8 @@ impl Layered {
                 let out = h * (2.0 * w.dot(h)) - w;
                 if out.z > 0.0 {
                     let seen = share * 4.0 * out.z * self.ggx.visibility(w, out) / self.ggx.visible(w);
-                    sums[0] += metal(facet) * seen;
-                    sums[1] += self.dielectric(facet) * seen;
+                    sums[0] += self.metal_if_any(facet) * seen;
+                    sums[1] += self.dielectric_if_any(facet) * seen;
                 }
             }
         }
