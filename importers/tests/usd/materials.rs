@@ -239,6 +239,10 @@ fn layers_of_standard_surface() {
     // Widths of 0.5 and 0.125 along and across: roughness² is the second, anisotropy² the way from there to 1.
     assert!((m.roughness.value.powi(2) - 0.125).abs() < 1e-6, "{m:?}");
     assert!((m.anisotropy.value.powi(2) - 0.375 / 0.875).abs() < 1e-6, "{m:?}");
+    let brushed = "float inputs:specular_anisotropy = 0.5";
+    let imported = stage("mtlx:", &shader("S", "ND_standard_surface_surfaceshader", brushed)).scene();
+    let mesh = imported.scene.meshes.iter().next().unwrap();
+    assert_eq!(mesh.uvs.len(), 1, "tangents need coordinates, without textures too");
 }
 
 #[test]

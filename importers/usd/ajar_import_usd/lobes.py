@@ -45,6 +45,10 @@ def stretched(
     s.set_number("roughness", roughness)
     if is_zero(anisotropy):
         return
+    # Where no normal map says otherwise, tangents are those of the first coordinates.
+    s.uv_names.add("st")
+    if s.materials.uv_set("st") != 0:
+        s.approximate("highlights are stretched along other texture coordinates than 'st'")
     if not is_constant(roughness) or not is_constant(anisotropy):
         s.approximate("images of roughness or anisotropy stretch highlights by another law")
         s.set_number("anisotropy", anisotropy)
