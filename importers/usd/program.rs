@@ -20,6 +20,7 @@ pub(super) const PROGRAM: Program = Program {
         "instancer.py",
         "layers.py",
         "lights.py",
+        "lobes.py",
         "main.py",
         "material.py",
         "mesh.py",

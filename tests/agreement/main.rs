@@ -7,6 +7,7 @@
 mod blocks;
 mod door;
 mod formats;
+mod sphere;
 
 use std::path::Path;
 

@@ -15,11 +15,17 @@ const CPU_SECONDS: u32 = 5;
 /// Time on the clock after which the program counts as hung.
 const HANG: Duration = Duration::from_secs(120);
 
-/// Address space of the program, bytes; the file is given a quarter of it.
+/// Address space of the program, bytes, where USD is read its memory; the file is given a quarter of it.
 const MEMORY: u64 = 512 << 20;
 
 /// Address space where USD is read: usd-core reserves more than a GiB that it hardly touches, and crashes without.
 const USD_MEMORY: u64 = 2 << 30;
+
+/// Runs a program and writes the largest memory that it or one of its children had at a time, in KiB.
+const MEASURED: &str = "import resource, subprocess, sys\n\
+    code = subprocess.call(sys.argv[2:])\n\
+    with open(sys.argv[1], 'w') as file: file.write(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))\n\
+    sys.exit(code if code >= 0 else 128 - code)";
 
 /// Bytes of messages about one file. More would bury what matters.
 const MESSAGES: usize = 64 << 10;
@@ -77,11 +83,21 @@ impl Jail {
         self.judge(path, fate, limited(MEMORY));
     }
 
-    /// The same for a USD file, which may refer to others in `folder`.
+    /// The same for a USD file, which may refer to others in `folder`. Memory is what is really used.
     pub fn try_usd(&mut self, path: &Path, folder: &Path, fate: Fate) {
-        let mut command = limited(USD_MEMORY);
+        let (limited, measure) = (limited(USD_MEMORY), self.path("memory"));
+        let mut command = Command::new(std::env::var_os("AJAR_USD_PYTHON").unwrap());
+        command.args(["-c", MEASURED]).arg(&measure).arg(limited.get_program()).args(limited.get_args());
         command.arg("--allow").arg(folder);
         self.judge(path, fate, command);
+        // Other systems count in other units.
+        if cfg!(target_os = "linux") {
+            let used = fs::read_to_string(measure).map_or(0, |kib| kib.parse::<u64>().unwrap() << 10);
+            println!("{}: {} MiB", path.display(), used >> 20);
+            if used > MEMORY {
+                self.escapes.push(format!("{}: it takes {} MiB", path.display(), used >> 20));
+            }
+        }
     }
 
     fn judge(&mut self, path: &Path, fate: Fate, command: Command) {

@@ -17,3 +17,4 @@ mod plug_in;
 mod scene_file;
 #[cfg(target_os = "linux")]
 mod traced;
+mod usd;

@@ -63,7 +63,11 @@ fn ways() -> Vec<Way> {
 
 fn usd_ways() -> Vec<Way> {
     let stage = |prim: &str| format!("#usda 1.0\n{prim}\n");
+    let paint = "<?xml version=\"1.0\"?><materialx version=\"1.38\"></materialx>";
     vec![
+        way("a.usda", stage("(\n    subLayers = [@FILE@]\n)"), "usda", stage("def \"A\" {\n}")),
+        way("a.usda", stage("def \"A\" (payload = @FILE@) {\n}"), "usda", stage("def \"A\" {\n}")),
+        way("a.usda", stage("def \"A\" (references = @FILE@</MaterialX>) {\n}"), "mtlx", paint),
         way("a.usda", stage("def \"A\" (references = @FILE@) {\n}"), "usda", stage("def \"A\" {\n}")),
         way(
             "a.usda",

@@ -7,8 +7,8 @@ use std::{
 
 use ajar_importers::ajar::write;
 use ajar_scene::{
-    AlphaMode, Camera, Channel, ColorSpace, Id, Image, ImageSource, Input, Light, LightKind, Material, Mesh,
-    Node, NormalMap, Preference, Projection, Scene, Texture, TextureInput, Wrap,
+    AlphaMode, Camera, Channel, ColorSpace, Filter, Id, Image, ImageSource, Input, Light, LightKind,
+    Material, Mesh, Node, NormalMap, Preference, Projection, Scene, Texture, TextureInput, Wrap,
 };
 use glam::{Affine2, DAffine3, DVec3, Vec2, Vec3, Vec4};
 use serde_json::json;
@@ -23,20 +23,55 @@ fn full() -> Scene {
     let texture = scene.textures.push(Texture {
         color_space: ColorSpace::Srgb,
         wrap_u: Wrap::Mirror,
+        wrap_v: Wrap::Black,
+        filter: Filter::Nearest,
         uv_set: 1,
         transform: Affine2::from_scale_angle_translation(Vec2::new(0.1, 0.3), 0.7, Vec2::ONE / 3.0),
+        scale: Vec4::new(0.1, 0.2, 0.3, 0.4),
         bias: Vec4::splat(0.1),
-        ..Texture::new(image)
+        image,
     });
     let input = TextureInput { texture, channel: Channel::B };
+    let number = |value| Input { value, texture: Some(input) };
+    let color = |x| Input { value: Vec3::new(x, 1.0 / 3.0, 1e-30), texture: Some(input) };
+    // Every field is written out, so that a new one is not forgotten here.
     let material = scene.materials.push(Material {
         name: "red \"one\"".into(),
-        base_color: Input { value: Vec3::new(0.1, 1.0 / 3.0, 1e-30), texture: Some(input) },
+        base_color: color(0.1),
+        diffuse_roughness: number(0.11),
+        metallic: number(0.12),
+        roughness: number(0.13),
+        anisotropy: number(0.14),
+        anisotropy_rotation: -0.15,
+        anisotropy_direction: Some(texture),
+        specular: number(0.16),
+        specular_color: color(0.17),
+        ior: 1.18,
+        dispersion: 0.19,
+        transmission: number(0.2),
+        thin_walled: true,
+        diffuse_transmission: number(0.21),
+        diffuse_transmission_color: color(0.22),
+        attenuation_color: Vec3::new(0.23, 1.0 / 3.0, 0.0),
         attenuation_distance: 0.7,
+        sheen_color: color(0.24),
+        sheen_roughness: number(0.25),
+        film: number(0.26),
+        film_ior: 1.27,
+        film_thickness: number(280.3),
+        coat: number(0.29),
+        coat_roughness: number(0.3),
+        coat_ior: 1.31,
+        emission: color(1e9 / 3.0),
+        double_sided: false,
+        cull_back: true,
+        opacity: number(0.32),
         alpha_mode: AlphaMode::Mask(0.3),
         normal_map: Some(NormalMap { texture, scale: 0.9 }),
-        ..Material::default()
+        coat_normal_map: Some(NormalMap { texture, scale: -0.1 }),
+        unlit: true,
     });
+    scene.materials.push(Material { alpha_mode: AlphaMode::Blend, ..Material::default() });
     let mesh = scene.meshes.push(Mesh {
         name: "triangle".into(),
         positions: vec![Vec3::ZERO, Vec3::X / 3.0, Vec3::Y * 0.1],
@@ -47,12 +82,32 @@ fn full() -> Scene {
         colors: Some(vec![Vec4::splat(0.2); 3]),
         material: Some(material),
     });
-    let kind = LightKind::Directional { illuminance: 0.1, angle: 0.009 };
-    let light = scene.lights.push(Light { name: "sun".into(), color: Vec3::new(1.0, 0.9, 0.7), kind });
+    let sun = LightKind::Directional { illuminance: 0.1, angle: 0.009 };
+    let light = scene.lights.push(Light { name: "sun".into(), color: Vec3::new(1.0, 0.9, 0.7), kind: sun });
+    for kind in [
+        LightKind::Point { intensity: 0.1 },
+        LightKind::Spot { intensity: 0.1, inner: 0.2, outer: 0.3 },
+        LightKind::Rect { radiance: 0.1, width: 0.2, height: 0.3, texture: Some(texture) },
+        LightKind::Disk { radiance: 0.1, radius: 0.2 },
+        LightKind::Sphere { radiance: 0.1, radius: 0.2 },
+        LightKind::Cylinder { radiance: 0.1, radius: 0.2, length: 0.3 },
+        LightKind::Environment { radiance: 0.1, texture: Some(texture) },
+    ] {
+        let light = scene.lights.push(Light { name: format!("{kind:?}"), color: Vec3::ONE / 3.0, kind });
+        scene.add_root(Node { light: Some(light), ..Node::default() });
+    }
     let projection =
         Projection::Perspective { yfov: 0.7, lens_radius: 0.01, focus_distance: 3.3, shift: [0.1, -0.2] };
     let camera =
         scene.cameras.push(Camera { name: "main".into(), projection, aspect: Some(1.7), exposure: 0.3 });
+    let seen_flat = Projection::Orthographic { half_height: 0.1 };
+    let flat = scene.cameras.push(Camera {
+        name: "flat".into(),
+        projection: seen_flat,
+        aspect: None,
+        exposure: 1.0,
+    });
+    scene.add_root(Node { camera: Some(flat), ..Node::default() });
     let leaf =
         scene.nodes.push(Node { name: "leaf".into(), meshes: vec![mesh], visible: false, ..Node::default() });
     scene.add_root(Node {

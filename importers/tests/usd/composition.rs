@@ -182,3 +182,41 @@ def RenderProduct "Product" { rel camera = </Main> }
     assert!((lens_radius - 1.25).abs() < 1e-5 && focus_distance == 3.0);
     assert!((shift[0] - 0.1).abs() < 1e-5 && camera.aspect == Some(1.5));
 }
+
+#[test]
+fn settings_that_are_ignored_are_named() {
+    if !can_run() {
+        return;
+    }
+    let prims = r#"
+def Camera "Main" { float fStop = 2
+    float focusDistance = 3
+    double shutter:close = 0.5 }
+def RenderSettings "Settings" { rel products = </Product>
+    rel camera = </Main>
+    uniform bool disableDepthOfField = true
+    uniform token aspectRatioConformPolicy = "cropAperture"
+    uniform token[] includedPurposes = ["default", "proxy"]
+    uniform token[] materialBindingPurposes = ["full", ""] }
+def RenderProduct "Product" { token productName = "a.exr"
+    uniform token productType = "deepRaster"
+    rel orderedVars = </Beauty> }
+def RenderVar "Beauty" {}
+"#;
+    let imported = Stage::new(prims).scene();
+    let said = warnings(&imported);
+    for expected in [
+        "/Main: the shutter is ignored",
+        "/Settings: aspectRatioConformPolicy is ignored: it is cropAperture",
+        "/Settings: includedPurposes is ignored: it is default, proxy",
+        "/Product: productType is ignored: it is deepRaster",
+        "/Product: productName is ignored",
+        "/Product: orderedVars is ignored",
+    ] {
+        assert!(said.iter().any(|line| line.starts_with(expected)), "{expected}: {said:#?}");
+    }
+    assert_eq!(said.len(), 6, "materialBindingPurposes is what is done: {said:#?}");
+    let camera = imported.scene.cameras.iter().next().unwrap();
+    let ajar_scene::Projection::Perspective { lens_radius, .. } = camera.projection else { panic!() };
+    assert_eq!(lens_radius, 0.0, "without depth of field");
+}

@@ -87,3 +87,37 @@ fn domes_and_meshes_that_shine() {
     let material = imported.scene.meshes.iter().next().unwrap().material.unwrap();
     assert_eq!(imported.scene.materials[material].emission.value, glam::Vec3::splat(7.0));
 }
+
+#[test]
+fn lights_that_are_none_and_parts_without_a_place_are_named() {
+    if !can_run() {
+        return;
+    }
+    let prims = "def PortalLight \"Portal\" {}\ndef GeometryLight \"Geometry\" {}\ndef PluginLight \"Plugin\" {}\n\
+                 def DiskLight \"Disk\" { asset inputs:texture:file = @a.png@ }\n\
+                 def RectLight \"Cone\" (prepend apiSchemas = [\"ShapingAPI\"]) {\n\
+                 asset inputs:texture:file = @a.png@\nfloat inputs:shaping:cone:angle = 30\n}\n\
+                 def DistantLight \"Sun\" (prepend apiSchemas = [\"ShapingAPI\"]) {\n\
+                 float inputs:shaping:cone:angle = 30\n}\n\
+                 def SphereLight \"Ball\" (prepend apiSchemas = [\"ShadowAPI\"]) {\n\
+                 color3f inputs:shadow:color = (0, 0, 1)\n}\n\
+                 def CylinderLight \"Line\" { bool treatAsLine = true }\n\
+                 def RectLight \"Plain\" (prepend apiSchemas = [\"ShapingAPI\", \"ShadowAPI\"]) {\n\
+                 asset inputs:texture:file = @a.png@\n}\n";
+    let imported = Stage::new(prims).with("a.png", "").scene();
+    let said = warnings(&imported);
+    for expected in [
+        "/Portal: the PortalLight is dropped",
+        "/Geometry: the GeometryLight is dropped",
+        "/Plugin: the PluginLight is dropped",
+        // Of the cone, too.
+        "/Disk: the texture is ignored: only domes, and rectangles without a cone, have one (and at 1 more",
+        "/Cone: a light with a shaping cone",
+        "/Sun: the shaping cone is ignored",
+        "/Ball: shadow:color is ignored",
+        "/Line: treatAsLine is approximated",
+    ] {
+        assert!(said.iter().any(|line| line.starts_with(expected)), "{expected}: {said:#?}");
+    }
+    assert_eq!(said.len(), 8, "{said:#?}");
+}

@@ -159,9 +159,11 @@ fn materialx_graphs_become_one_texture() {
     ]
     .concat();
     let imported = stage("mtlx:", &shaders).scene();
-    let said = warnings(&imported);
-    assert!(said.len() == 1 && said[0].contains("standard_surface: 'sheen' is ignored"), "{said:?}");
+    assert_eq!(warnings(&imported), [""; 0]);
     let m = material(&imported);
+    // Widths of sheen are squares of Ajar's roughness.
+    assert_eq!(m.sheen_color.value, Vec3::ONE);
+    assert!((m.sheen_roughness.value - 0.3_f32.sqrt()).abs() < 1e-6, "{m:?}");
     let texture = |id| &imported.scene.textures[id];
     let base = texture(m.base_color.texture.unwrap().texture);
     // base · (1 + 0.25 · (image − 1))
@@ -192,6 +194,78 @@ fn openpbr_glass() {
     let m = material(&imported);
     assert_eq!((m.transmission.value, m.ior, m.attenuation_distance), (1.0, 1.4, 2.0));
     assert_eq!((m.attenuation_color, m.base_color.value), (Vec3::new(0.5, 1.0, 1.0), Vec3::ONE));
+}
+
+#[test]
+fn layers_of_standard_surface() {
+    if !can_run() {
+        return;
+    }
+    let shaders = [
+        shader(
+            "S",
+            "ND_standard_surface_surfaceshader",
+            "float inputs:transmission = 1\nfloat inputs:transmission_dispersion = 40\n\
+             color3f inputs:transmission_scatter = (0, 0.1, 0)\n\
+             float inputs:sheen = 0.5\ncolor3f inputs:sheen_color.connect = </M/Image.outputs:out>\n\
+             float inputs:thin_film_thickness = 300\nfloat inputs:thin_film_IOR = 1.4\n\
+             float inputs:specular_roughness = 0.5\nfloat inputs:specular_anisotropy = 0.75\n\
+             float inputs:coat = 1\ncolor3f inputs:coat_color = (1, 1, 0.5)\n\
+             vector3f inputs:coat_normal.connect = </M/Normal.outputs:out>",
+        ),
+        shader("Image", "ND_image_color3", "asset inputs:file = @a.png@\ncolor3f outputs:out")
+            .replace("\ntoken outputs:out", ""),
+        shader(
+            "Normal",
+            "ND_normalmap",
+            "vector3f inputs:in.connect = </M/Bump.outputs:out>\nvector3f outputs:out",
+        )
+        .replace("\ntoken outputs:out", ""),
+        shader("Bump", "ND_image_vector3", "asset inputs:file = @b.png@\nvector3f outputs:out")
+            .replace("\ntoken outputs:out", ""),
+    ]
+    .concat();
+    let imported = stage("mtlx:", &shaders).scene();
+    let said = warnings(&imported);
+    for name in ["transmission_scatter", "coat_color"] {
+        assert!(said.iter().any(|line| line.contains(&format!("'{name}' is ignored"))), "{said:?}");
+    }
+    assert_eq!(said.len(), 2, "{said:?}");
+    let m = material(&imported);
+    assert_eq!((m.dispersion, m.film.value, m.film_thickness.value, m.film_ior), (0.5, 1.0, 300.0, 1.4));
+    let sheen = &imported.scene.textures[m.sheen_color.texture.unwrap().texture];
+    assert_eq!((sheen.scale[0], m.normal_map), (0.5, None));
+    assert!(m.coat_normal_map.is_some());
+    // Widths of 0.5 and 0.125 along and across: roughness² is the second, anisotropy² the way from there to 1.
+    assert!((m.roughness.value.powi(2) - 0.125).abs() < 1e-6, "{m:?}");
+    assert!((m.anisotropy.value.powi(2) - 0.375 / 0.875).abs() < 1e-6, "{m:?}");
+    let brushed = "float inputs:specular_anisotropy = 0.5";
+    let imported = stage("mtlx:", &shader("S", "ND_standard_surface_surfaceshader", brushed)).scene();
+    let mesh = imported.scene.meshes.iter().next().unwrap();
+    assert_eq!(mesh.uvs.len(), 1, "tangents need coordinates, without textures too");
+}
+
+#[test]
+fn layers_of_openpbr() {
+    if !can_run() {
+        return;
+    }
+    let inputs = "float inputs:fuzz_weight = 0.5\ncolor3f inputs:fuzz_color = (1, 0.5, 1)\n\
+                  float inputs:fuzz_roughness = 0.8\nfloat inputs:thin_film_weight = 0.25\n\
+                  float inputs:thin_film_thickness = 0.3\nfloat inputs:transmission_weight = 1\n\
+                  float inputs:transmission_dispersion_scale = 0.5\n\
+                  float inputs:transmission_dispersion_abbe_number = 40\nfloat inputs:coat_weight = 1\n\
+                  float inputs:coat_roughness = 0.5\nfloat inputs:specular_roughness = 0";
+    let imported = stage("mtlx:", &shader("S", "ND_open_pbr_surface_surfaceshader", inputs)).scene();
+    let said = warnings(&imported);
+    assert!(said[0].contains("fuzz is approximated by sheen"), "{said:?}");
+    assert!(said[1].contains("'coat_darkening' is ignored") && said.len() == 2, "{said:?}");
+    let m = material(&imported);
+    assert_eq!((m.sheen_color.value, m.sheen_roughness.value), (Vec3::new(0.5, 0.25, 0.5), 1.0));
+    assert_eq!((m.film.value, m.film_ior, m.dispersion, m.coat_ior), (0.25, 1.4, 0.25, 1.6));
+    assert!((m.film_thickness.value - 300.0).abs() < 1e-3, "{m:?}");
+    // A rough coat over a mirror: 2 · 0.5⁴ is the fourth power of what is seen.
+    assert!((m.roughness.value.powi(4) - 0.125).abs() < 1e-6, "{m:?}");
 }
 
 #[test]

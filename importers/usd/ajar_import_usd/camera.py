@@ -38,6 +38,8 @@ def camera(walk: Walk, prim: Usd.Prim) -> int | None:
     item = {"name": walk.camera_name(prim), "projection": projection, "aspect": width / height, "exposure": exposure}
     if schema.GetClippingPlanesAttr().Get(walk.time):
         walk.report.warn(prim.GetPath(), "clipping planes are ignored")
+    if get("shutter:close") > get("shutter:open"):
+        walk.report.warn(prim.GetPath(), "the shutter is ignored: there is no motion blur")
     return walk.document.add("cameras", item)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 from urllib.parse import urlparse
 
 from pxr import Ar, Sdf, Tf
@@ -14,6 +14,10 @@ from .report import Report, StageError, commentary
 
 # Bytes that usd-core needs for a prim, roughly.
 PRIM_SIZE = 2048
+# And for text, as measured: for a byte, for a number of a list, for a line or statement.
+TEXT_SIZE = 4
+TEXT_SIZES = {b",": 140, b"\n": 400, b";": 400}
+CHUNK = 1 << 20
 DEEPEST = 400
 MOST_LAYERS = 100_000
 
@@ -51,7 +55,7 @@ def check(file: Path, jail: Jail, memory_limit: int, report: Report) -> list[Any
         raise StageError(f"cannot be read: {error.strerror}") from error
     if size > memory_limit:
         raise StageError(f"{size} bytes are more than the memory limit", cause="resource")
-    visited = Visited(jail, memory_limit // PRIM_SIZE, report)
+    visited = Visited(jail, memory_limit, report)
     visited.layer(str(file), None)
     visited.count()
     return [layer for layer in visited.layers.values() if layer]
@@ -60,8 +64,9 @@ def check(file: Path, jail: Jail, memory_limit: int, report: Report) -> list[Any
 class Visited:
     """The layers found."""
 
-    def __init__(self, jail: Jail, most: int, report: Report) -> None:
-        self.jail, self.most, self.report = jail, most, report
+    def __init__(self, jail: Jail, memory_limit: int, report: Report) -> None:
+        self.jail, self.memory_limit, self.report = jail, memory_limit, report
+        self.most = memory_limit // PRIM_SIZE
         self.layers: dict[str, Any] = {}
         self.counts: dict[tuple[str, str], int] = {}
 
@@ -76,7 +81,7 @@ class Visited:
                 raise StageError(f"more than {MOST_LAYERS} layers", place, cause="resource")
             self.layers[path] = layer = self.open(self.jail.check(path, place), place)
             if layer:
-                todo += [(located(layer, asset, place), place) for asset, place in arcs(layer) if asset]
+                todo += [(located(layer, asset, place), place) for asset, place in self.arcs(layer) if asset]
 
     def open(self, path: str, place: str | None) -> Any:
         """The layer, or None where there is none: usd-core says so when it composes."""
@@ -84,13 +89,45 @@ class Visited:
         if not Path(Ar.SplitPackageRelativePathOuter(path)[0]).is_file() or path.lower().endswith(".mtlx"):
             return None
         if path.lower().endswith(".usdz"):
-            check_package(Path(path), place)
+            check_package(Path(path), self.memory_limit, place)
+        elif not Ar.IsPackageRelativePath(path):
+            try:
+                with Path(path).open("rb") as file:
+                    check_text(file, self.memory_limit, place)
+            except OSError as error:
+                raise StageError(f"{path!r} cannot be read: {error.strerror}", place) from error
         try:
             return Sdf.Layer.FindOrOpen(path)
         except Tf.ErrorException as error:
             if place is None:
                 raise StageError(f"is no USD that can be read: {commentary(error)}") from error
             return None
+
+    def arcs(self, layer: Any) -> Iterator[tuple[str, str | None]]:
+        """Every path that composition may open because of `layer`, with the prim that says so."""
+        found: list[tuple[str, str | None]] = [(asset, None) for asset in layer.subLayerPaths]
+        prims = 0
+        too_deep = None
+
+        # What it raises would be lost.
+        def visit(path: Any) -> None:
+            nonlocal prims, too_deep
+            if path.pathElementCount > 2 * DEEPEST:
+                # More than variants account for. Texts of all these paths would not fit into memory: one prim tells.
+                too_deep = too_deep or str(path.GetPrefixes()[0])
+            elif path.IsPrimPath() or path.IsPrimVariantSelectionPath():
+                prims += 1
+                if prims <= self.most:
+                    spec, place = spec_at(layer, path), str(path)
+                    files = clip_files(spec.GetInfo("clips") if spec.HasInfo("clips") else {})
+                    found.extend((asset, place) for asset in [*(asset for asset, _ in targets(spec)), *files])
+
+        layer.Traverse(Sdf.Path.absoluteRootPath, visit)
+        if too_deep:
+            raise StageError(f"prims are nested more than {DEEPEST} deep", too_deep)
+        if prims > self.most:
+            raise StageError(f"a layer has {prims} prims, the limit on memory allows {self.most}", cause="resource")
+        yield from found
 
     def count(self) -> None:
         """Prims that composition makes at most, references counted as often as they are met."""
@@ -144,22 +181,6 @@ def located(layer: Any, asset: str, place: str | None) -> str:
     return str(Path(layer.realPath).parent / path)
 
 
-def arcs(layer: Any) -> Iterator[tuple[str, str | None]]:
-    """Every path that composition may open because of `layer`, with the prim that says so."""
-    for asset in layer.subLayerPaths:
-        yield asset, None
-    found: list[tuple[str, str | None]] = []
-
-    def visit(path: Any) -> None:
-        if path.IsPrimPath() or path.IsPrimVariantSelectionPath():
-            spec, place = spec_at(layer, path), str(path)
-            found.extend((asset, place) for asset, _ in targets(spec))
-            found.extend((asset, place) for asset in clip_files(spec.GetInfo("clips") if spec.HasInfo("clips") else {}))
-
-    layer.Traverse(Sdf.Path.absoluteRootPath, visit)
-    yield from found
-
-
 def clip_files(clips: Any) -> Iterator[str]:
     """Files that value clips name. Of a template, its folder tells."""
     if isinstance(clips, Sdf.AssetPath):
@@ -177,35 +198,60 @@ def clip_files(clips: Any) -> Iterator[str]:
 def targets(spec: Any) -> list[tuple[str, Any]]:
     """References, payloads and, within the layer, inherited and specialized prims of a prim: file and prim."""
     found = []
-    if hasattr(spec, "referenceList"):
-        for items in (spec.referenceList, spec.payloadList):
-            every = [*items.explicitItems, *items.prependedItems, *items.appendedItems, *items.addedItems]
-            found += [(item.assetPath, item.primPath) for item in every]
-        for items in (spec.inheritPathList, spec.specializesList):
-            found += [("", path) for path in [*items.explicitItems, *items.prependedItems, *items.appendedItems]]
+    for key in ("references", "payload"):
+        found += [(item.assetPath, item.primPath) for item in listed(spec, key)]
+    for key in ("inheritPaths", "specializes"):
+        found += [("", path) for path in listed(spec, key)]
     return found
+
+
+def listed(spec: Any, key: str) -> list[Any]:
+    """What an edited list can bring. The lists that a spec has as properties take a hundred times as long."""
+    if not spec.HasInfo(key):
+        return []
+    items = spec.GetInfo(key)
+    return [*items.explicitItems, *items.prependedItems, *items.appendedItems, *items.addedItems]
 
 
 def children(spec: Any) -> list[Any]:
     """Prims below a prim, those of its variants too."""
-    found = list(spec.nameChildren)
-    for variants in getattr(spec, "variantSets", {}).values():
-        found += [variant.primSpec for variant in variants.variantList]
+    found = list(spec.nameChildren) if spec.HasInfo("primChildren") else []
+    if spec.HasInfo("variantSetChildren"):
+        for variants in spec.variantSets.values():
+            found += [variant.primSpec for variant in variants.variantList]
     return found
 
 
-def check_package(path: Path, place: str | None) -> None:
+def check_text(file: IO[bytes], memory_limit: int, place: str | None) -> None:
+    """Text must not take more memory than there is; other files are as large as what is in them."""
+    needed = 0
+    while chunk := file.read(CHUNK):
+        if not needed and chunk.startswith(b"PXR-USDC"):
+            return
+        needed += sum(chunk.count(mark) * size for mark, size in TEXT_SIZES.items()) + TEXT_SIZE * len(chunk)
+        if needed > memory_limit:
+            raise StageError("its text takes more memory than the limit allows", place, cause="resource")
+
+
+def check_package(path: Path, memory_limit: int, place: str | None) -> None:
     """A .usdz holds files as they are, below itself."""
     try:
         with zipfile.ZipFile(path) as package:
-            entries = package.infolist()
-    except (zipfile.BadZipFile, OSError, NotImplementedError, ValueError) as error:
-        raise StageError(f"is no package that can be read: {error}", place) from error
-    for entry in entries:
-        parts = entry.filename.replace("\\", "/").split("/")
-        if entry.filename.startswith(("/", "\\")) or ".." in parts or ":" in parts[0]:
-            raise StageError(f"the package holds {entry.filename!r}, which leaves it", place)
-        if entry.compress_type != zipfile.ZIP_STORED or entry.flag_bits & 1:
-            raise StageError(
-                f"the package holds {entry.filename!r} compressed or encrypted; USD wants files as they are", place
-            )
+            for entry in package.infolist():
+                check_entry(entry, place)
+                if entry.filename.lower().endswith((".usd", ".usda")):
+                    with package.open(entry) as file:
+                        check_text(file, memory_limit, place)
+    except (zipfile.BadZipFile, OSError, NotImplementedError, ValueError, EOFError) as error:
+        raise StageError(f"is no package that can be read: {str(error) or 'it ends early'}", place) from error
+
+
+def check_entry(entry: zipfile.ZipInfo, place: str | None) -> None:
+    """A file of a package."""
+    parts = entry.filename.replace("\\", "/").split("/")
+    if entry.filename.startswith(("/", "\\")) or ".." in parts or ":" in parts[0]:
+        raise StageError(f"the package holds {entry.filename!r}, which leaves it", place)
+    if entry.compress_type != zipfile.ZIP_STORED or entry.flag_bits & 1:
+        raise StageError(
+            f"the package holds {entry.filename!r} compressed or encrypted; USD wants files as they are", place
+        )

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 # Shaping cones at least so wide shape nothing.
 WIDE = 90.0
+# Lights that a cone makes a spot.
+SHAPED = ("SphereLight", "RectLight", "DiskLight", "CylinderLight")
+TEXTURED = ("RectLight", "DomeLight", "DomeLight_1")
 
 
 def light(walk: Walk, prim: Usd.Prim, node: Node) -> None:
@@ -123,6 +126,19 @@ class Lamp:
         shadow = self.prim.GetAttribute("inputs:shadow:enable")
         if shadow and shadow.Get(self.walk.time) is False:
             self.warn("shadow:enable is ignored: lights cast shadows")
+        for name in ("color", "distance"):
+            tint = self.prim.GetAttribute(f"inputs:shadow:{name}")
+            if tint and tint.HasAuthoredValue() and np.max(tint.Get(self.walk.time)) > 0:
+                self.warn(f"shadow:{name} is ignored: shadows are where light does not come")
+        self.name_what_the_kind_lacks()
+
+    def name_what_the_kind_lacks(self) -> None:
+        """Names a cone or a texture that other kinds of lights have."""
+        kind, file = self.prim.GetTypeName(), self.prim.GetAttribute("inputs:texture:file")
+        if self.cone() and kind not in SHAPED:
+            self.warn("the shaping cone is ignored: only lights with a place become spots")
+        if file and file.Get(self.walk.time) and (kind not in TEXTURED or (self.cone() and kind in SHAPED)):
+            self.warn("the texture is ignored: only domes, and rectangles without a cone, have one")
 
     def cone(self) -> tuple[float, float] | None:
         """Half angles of the shaping cone in which the light is full, and which it does not leave."""
@@ -185,6 +201,8 @@ class Lamp:
         x, y, z = np.linalg.norm(self.stretch(), axis=1)
         around = 2 * math.pi * radius * math.sqrt((y * y + z * z) / 2)
         radiance = self.divided(around * length * x)
+        if self.prim.GetAttribute("treatAsLine").Get(self.walk.time):
+            self.approximate("treatAsLine is approximated: the light keeps its radius")
         if not self.small(node, radiance * 2 * radius * length * x * (y + z) / 2):
             self.put(node, "cylinder", radiance=radiance, radius=radius, length=length)
 

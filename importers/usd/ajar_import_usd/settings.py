@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pxr import Usd, UsdRender
+from pxr import Gf, Usd, UsdRender, Vt
 
 if TYPE_CHECKING:
     from .walk import Walk
 
 LARGEST = 65535
+
+KEPT = {
+    "aspectRatioConformPolicy": "expandAperture",
+    "dataWindowNDC": Gf.Vec4f(0, 0, 1, 1),
+    "includedPurposes": Vt.TokenArray(["default", "render"]),
+    "materialBindingPurposes": Vt.TokenArray(["full", ""]),
+    "pixelAspectRatio": 1.0,
+    "productType": "raster",
+    "renderingColorSpace": "lin_rec709_scene",
+}
+"""What is done whatever the settings say."""
 
 
 def settings(walk: Walk) -> None:
@@ -40,13 +51,34 @@ def take(walk: Walk, prim: Usd.Prim) -> None:
             walk.document.render["size"] = [int(width), int(height)]
         else:
             walk.report.warn(prim.GetPath(), f"a resolution of {width} × {height} is ignored")
-    for attribute, whole in ((base.GetDataWindowNDCAttr(), (0, 0, 1, 1)), (base.GetPixelAspectRatioAttr(), 1)):
-        value = attribute.Get(walk.time)
-        if value is not None and value != whole:
-            walk.report.warn(prim.GetPath(), f"{attribute.GetName()} is ignored")
+    name_what_is_ignored(walk, prim)
+    if prim.GetAttribute("disableDepthOfField").Get(walk.time):
+        for camera in walk.document.lists.get("cameras", []):
+            camera["projection"].get("perspective", {})["lens_radius"] = 0.0
     for path in base.GetCameraRel().GetForwardedTargets()[:1]:
         name = walk.cameras.get(path)
         if name is None:
             walk.report.warn(prim.GetPath(), f"the camera {path} is not there")
         else:
             walk.document.render["camera"] = name
+
+
+def name_what_is_ignored(walk: Walk, prim: Usd.Prim) -> None:
+    """Names what settings or a product say that Ajar does otherwise."""
+    for name, kept in KEPT.items():
+        attribute = prim.GetAttribute(name)
+        if attribute and attribute.HasAuthoredValue():
+            value = attribute.Get(walk.time)
+            if value not in (kept, None, ""):
+                walk.report.warn(prim.GetPath(), f"{name} is ignored: it is {said(value)}, and taken as {said(kept)}")
+    if prim.GetAttribute("productName").Get(walk.time):
+        walk.report.warn(prim.GetPath(), "productName is ignored: the command line says where the image is written")
+    if prim.GetRelationship("orderedVars").GetForwardedTargets():
+        walk.report.warn(prim.GetPath(), "orderedVars is ignored: the command line says which layers images have")
+
+
+def said(value: object) -> str:
+    """A value in words."""
+    if isinstance(value, Vt.TokenArray):
+        return ", ".join(token or "all" for token in value) or "none"
+    return str(value)

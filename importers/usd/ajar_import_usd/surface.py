@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from .material import Materials
 
 CHANNELS = "rgba"
+# The normal that is the surface's.
+UP = (0.0, 0.0, 1.0)
 
 
 class Surface:
@@ -51,9 +53,9 @@ class Surface:
         """One number."""
         return self.numbers(name, default)[0]
 
-    def is_connected(self, name: str) -> bool:
-        """Whether another shader feeds an input."""
-        return self.materials.network.value(self.shader, name)[1] is not None
+    def says(self, name: str) -> bool:
+        """Whether an input has a value or a shader that feeds it."""
+        return self.materials.network.value(self.shader, name) != (None, None)
 
     def product(self, name: str, factor: str, a: Term, b: Term) -> Term:
         """a · b, or a alone with a warning where both are images."""
@@ -67,7 +69,7 @@ class Surface:
         """Names inputs that do something which Ajar cannot do."""
         for name, default in defaults.items():
             term = self.term(name, default)
-            if not is_constant(term) or numbers(term)[0] != default:
+            if not is_constant(term) or any(v != default for v in numbers(term)):
                 self.warn(f"{name!r} is ignored")
 
     def set_number(self, key: str, term: Term, most: float = 1.0) -> None:
@@ -137,17 +139,20 @@ class Surface:
             self.approximate(f"{key.replace('_', ' ')} {value:g} is limited to {kept:g}")
         return kept
 
-    def set_normal(self, term: Term) -> None:
-        """A normal map from decoded normals, −1 to 1."""
-        sources = {c.source for c in term[:3]}
+    def set_normal(self, name: str, key: str = "normal_map") -> None:
+        """A normal map from an input of decoded normals, −1 to 1."""
+        term = self.term(name, UP)
         if is_constant(term):
+            if tuple(numbers(term)) != UP:
+                self.warn(f"{name!r} is ignored: it is no image")
             return
+        sources = {c.source for c in term[:3]}
         if len(term) < 3 or len(sources) > 1 or [c.channel for c in term[:3]] != ["r", "g", "b"]:
-            self.warn("the normal map is dropped: it is not one image")
+            self.warn(f"{name!r} is ignored: it is not one image")
             return
         scale, bias = [c.scale / 2 for c in term[:3]], [(c.bias + 1) / 2 for c in term[:3]]
         if all(c.scale == 1 and c.bias == 0 for c in term[:3]):
-            self.approximate("the normal map has no scale and bias, taken as 2 and −1")
+            self.approximate(f"{name!r} has no scale and bias, taken as 2 and −1")
             scale, bias = [1.0] * 3, [0.0] * 3
         texture = self.texture(next(iter(sources)), [*scale, 1.0], [*bias, 0.0])  # type: ignore[arg-type]
-        self.item["normal_map"] = {"texture": texture}
+        self.item[key] = {"texture": texture}

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from . import lobes
+from .lobes import WHITE
 from .surface import Surface
-from .terms import Term, UnsupportedError, constant, is_constant, mixed, numbers, product
+from .terms import Term, UnsupportedError, computed, constant, is_constant, is_zero, numbers, product
 
-WHITE = (1.0, 1.0, 1.0)
+# Ajar's dispersion times the Abbe number.
+ABBE = 20.0
 
 
 def preview_surface(s: Surface) -> None:
@@ -23,8 +26,7 @@ def preview_surface(s: Surface) -> None:
         s.set_number("metallic", s.term("metallic", 0.0))
     s.set_number("coat", s.term("clearcoat", 0.0))
     s.set_number("coat_roughness", s.term("clearcoatRoughness", 0.01))
-    if s.is_connected("normal"):
-        s.set_normal(s.term("normal", (0.0, 0.0, 1.0)))
+    s.set_normal("normal")
     s.ignored(displacement=0.0, occlusion=1.0)
     preview_opacity(s)
 
@@ -68,103 +70,94 @@ def preview_opacity(s: Surface) -> None:
 def standard_surface(s: Surface) -> None:
     """Autodesk's Standard Surface 1.0.1, as MaterialX and Arnold have it."""
     base = s.product("base_color", "base", s.term("base_color", (0.8,) * 3), s.term("base", 1.0))
-    base = scattered(s, base, s.number("subsurface", 0.0), s.term("subsurface_color", WHITE))
+    base = lobes.scattered(s, base, s.number("subsurface", 0.0), s.term("subsurface_color", WHITE))
     s.set_number("diffuse_roughness", s.term("diffuse_roughness", 0.0))
-    s.set_number("metallic", s.term("metalness", 0.0))
-    s.set_number("specular", s.term("specular", 1.0))
-    s.set_color("specular_color", s.term("specular_color", WHITE))
-    s.set_number("roughness", s.term("specular_roughness", 0.2))
-    s.item["ior"] = max(s.number("specular_IOR", 1.5), 1.0)
-    s.set_number("anisotropy", s.term("specular_anisotropy", 0.0))
+    lobes.specular(s, "specular", "metalness", "specular_IOR")
+    anisotropy = s.term("specular_anisotropy", 0.0)
+    lobes.stretched(s, s.term("specular_roughness", 0.2), anisotropy, standard_widths)
     s.item["anisotropy_rotation"] = 2 * math.pi * s.number("specular_rotation", 0.0)
-    transmitted(s, base, "transmission", "transmission_color", "transmission_depth")
+    if lobes.transmitted(s, base, "transmission", "transmission_color", "transmission_depth"):
+        abbe = s.number("transmission_dispersion", 0.0)
+        s.item["dispersion"] = ABBE / abbe if abbe > 0 else 0.0
+        s.ignored(transmission_scatter=0.0, transmission_extra_roughness=0.0)
     s.item["thin_walled"] = bool(s.number("thin_walled", 0))
-    coated(s, "coat", "coat_color", "coat_roughness", 0.1, "coat_IOR", 1.5)
+    lobes.fibres(s, "sheen", "sheen_color", s.term("sheen_roughness", 0.3), math.sqrt)
+    thickness = s.term("thin_film_thickness", 0.0)
+    if not is_zero(thickness):
+        lobes.filmed(s, constant(1.0), thickness, s.number("thin_film_IOR", 1.5))
+    if lobes.coated(s, "coat", s.term("coat_roughness", 0.1), s.number("coat_IOR", 1.5), "coat_normal"):
+        s.ignored(coat_anisotropy=0.0, coat_affect_color=0.0, coat_affect_roughness=0.0)
     emission = s.term("emission_color", WHITE)
     s.set_color("emission", s.product("emission_color", "emission", emission, s.term("emission", 0.0)), math.inf)
-    s.ignored(sheen=0.0, thin_film_thickness=0.0, transmission_scatter=0.0, transmission_dispersion=0.0)
-    covered(s, s.term("opacity", WHITE))
-    normals(s, "normal", "coat_normal", "tangent")
+    lobes.covered(s, s.term("opacity", WHITE))
+    s.set_normal("normal")
+    lobes.untwisted(s, "tangent", anisotropy)
+
+
+def standard_widths(roughness: float, anisotropy: float) -> tuple[float, float]:
+    """The GGX widths along and across the tangent of Standard Surface."""
+    aspect = math.sqrt(1 - min(anisotropy, 0.98))
+    return roughness**2 / aspect, roughness**2 * aspect
 
 
 def open_pbr(s: Surface) -> None:
     """OpenPBR 1.1."""
     base = s.product("base_color", "base_weight", s.term("base_color", (0.8,) * 3), s.term("base_weight", 1.0))
-    base = scattered(s, base, s.number("subsurface_weight", 0.0), s.term("subsurface_color", (0.8,) * 3))
+    base = lobes.scattered(s, base, s.number("subsurface_weight", 0.0), s.term("subsurface_color", (0.8,) * 3))
     s.set_number("diffuse_roughness", s.term("base_diffuse_roughness", 0.0))
-    s.set_number("metallic", s.term("base_metalness", 0.0))
-    s.set_number("specular", s.term("specular_weight", 1.0))
-    s.set_color("specular_color", s.term("specular_color", WHITE))
-    s.set_number("roughness", s.term("specular_roughness", 0.3))
-    s.item["ior"] = max(s.number("specular_ior", 1.5), 1.0)
-    s.set_number("anisotropy", s.term("specular_roughness_anisotropy", 0.0))
-    transmitted(s, base, "transmission_weight", "transmission_color", "transmission_depth")
+    lobes.specular(s, "specular_weight", "base_metalness", "specular_ior")
+    coat_roughness = s.term("coat_roughness", 0.0)
+    roughness = roughened(s, s.term("specular_roughness", 0.3), s.term("coat_weight", 0.0), coat_roughness)
+    anisotropy = s.term("specular_roughness_anisotropy", 0.0)
+    lobes.stretched(s, roughness, anisotropy, open_pbr_widths)
+    if lobes.transmitted(s, base, "transmission_weight", "transmission_color", "transmission_depth"):
+        abbe, scale = (
+            s.number("transmission_dispersion_abbe_number", 20.0),
+            s.number("transmission_dispersion_scale", 0.0),
+        )
+        s.item["dispersion"] = scale * ABBE / abbe if abbe > 0 and scale > 0 else 0.0
+        s.ignored(transmission_scatter=0.0)
     s.item["thin_walled"] = bool(s.number("geometry_thin_walled", 0))
-    coated(s, "coat_weight", "coat_color", "coat_roughness", 0.0, "coat_ior", 1.6)
+    if lobes.fibres(s, "fuzz_weight", "fuzz_color", s.term("fuzz_roughness", 0.5), sheen_of_fuzz):
+        s.approximate("fuzz is approximated by sheen, under the coat")
+    weight = s.term("thin_film_weight", 0.0)
+    if not is_zero(weight):
+        micrometres = s.term("thin_film_thickness", 0.5)
+        lobes.filmed(s, weight, product(micrometres, constant(1000.0)), s.number("thin_film_ior", 1.4))
+    if lobes.coated(s, "coat_weight", coat_roughness, s.number("coat_ior", 1.6), "geometry_coat_normal"):
+        s.ignored(coat_roughness_anisotropy=0.0)
+        if not is_zero(s.term("coat_darkening", 1.0)):
+            s.approximate("'coat_darkening' is ignored: a coat does not darken what is below")
     emission = s.term("emission_color", WHITE)
     luminance = s.term("emission_luminance", 0.0)
     s.set_color("emission", s.product("emission_color", "emission_luminance", emission, luminance), math.inf)
-    s.ignored(fuzz_weight=0.0, thin_film_weight=0.0, transmission_scatter=0.0, transmission_dispersion_scale=0.0)
-    covered(s, s.term("geometry_opacity", 1.0))
-    normals(s, "geometry_normal", "geometry_coat_normal", "geometry_tangent")
+    lobes.covered(s, s.term("geometry_opacity", 1.0))
+    s.set_normal("geometry_normal")
+    lobes.untwisted(s, "geometry_tangent", anisotropy)
 
 
-def scattered(s: Surface, base: Term, share: float, color: Term) -> Term:
-    """Subsurface scattering as diffuse reflection."""
-    if share <= 0:
-        return base
-    s.approximate("subsurface scattering is approximated by diffuse reflection")
+def open_pbr_widths(roughness: float, anisotropy: float) -> tuple[float, float]:
+    """The GGX widths along and across the tangent of OpenPBR."""
+    along = roughness**2 * math.sqrt(2 / (1 + (1 - anisotropy) ** 2))
+    return along, along * (1 - anisotropy)
+
+
+def roughened(s: Surface, roughness: Term, coat: Term, coat_roughness: Term) -> Term:
+    """What lies below a rough coat looks rougher: its lobe is widened by that of the coat, on both ways."""
+    if is_zero(coat) or is_zero(coat_roughness):
+        return roughness
     try:
-        return mixed(base, color, constant(share))
+        return computed(
+            lambda r, c, above: (1 - c) * r + c * min(r**4 + 2 * above**4, 1.0) ** 0.25, roughness, coat, coat_roughness
+        )
     except UnsupportedError:
-        return color if share > 0.5 else base
+        s.approximate("with images of roughness, a rough coat does not blur what is below")
+        return roughness
 
 
-def transmitted(s: Surface, base: Term, weight: str, color: str, depth: str) -> None:
-    """Transmission. Ajar tints it by the base colour, or, with a depth, by what is absorbed on the way."""
-    share, tint, distance = s.term(weight, 0.0), s.term(color, WHITE), s.number(depth, 0.0)
-    s.set_color("base_color", base)
-    if is_constant(share) and numbers(share)[0] <= 0:
-        return
-    s.set_number("transmission", share)
-    if not is_constant(share) or numbers(share)[0] < 1:
-        s.approximate(f"{color!r} is ignored: light that is scattered and light that passes have one colour")
-    elif distance > 0:
-        s.item["attenuation_color"] = [min(max(v, 1e-4), 1.0) for v in (s.numbers(color, WHITE) * 3)[:3]]
-        s.item["attenuation_distance"] = distance * s.materials.unit
-        s.item["base_color"] = list(WHITE)
-    else:
-        s.set_color("base_color", tint)
-
-
-def coated(s: Surface, weight: str, color: str, roughness: str, rough: float, ior: str, index: float) -> None:
-    """A clear coat; a tint of it is named."""
-    share = s.term(weight, 0.0)
-    s.set_number("coat", share)
-    if is_constant(share) and numbers(share)[0] <= 0:
-        return
-    s.set_number("coat_roughness", s.term(roughness, rough))
-    s.item["coat_ior"] = max(s.number(ior, index), 1.0)
-    tint = s.term(color, WHITE)
-    if not is_constant(tint) or any(v != 1 for v in numbers(tint)):
-        s.warn(f"{color!r} is ignored: the coat is clear")
-
-
-def covered(s: Surface, opacity: Term) -> None:
-    """Opacity as coverage; of a colour, its green."""
-    if is_constant(opacity) and min(numbers(opacity)) >= 1:
-        return
-    s.item["alpha_mode"] = "blend"
-    s.set_number("opacity", opacity[1:2] or opacity)
-
-
-def normals(s: Surface, normal: str, coat: str, tangent: str) -> None:
-    """The normal map; others are named."""
-    if s.is_connected(normal):
-        s.set_normal(s.term(normal, (0.0, 0.0, 1.0)))
-    for name in (coat, tangent):
-        if s.is_connected(name):
-            s.warn(f"{name!r} is ignored")
+def sheen_of_fuzz(roughness: float) -> float:
+    """The roughness with which sheen reflects as much as fuzz from each direction, within 0.02 from 0.3 to 0.8."""
+    return min((roughness / 0.8) ** 1.75, 1.0)
 
 
 SURFACES: dict[str, Callable[[Surface], None]] = {

@@ -89,6 +89,11 @@ def numbers(term: Term) -> list[float]:
     return [c.bias for c in term]
 
 
+def is_zero(term: Term) -> bool:
+    """Whether nothing is left of a weight."""
+    return is_constant(term) and all(v <= 0 for v in numbers(term))
+
+
 def widened(a: Term, b: Term) -> tuple[Term, Term]:
     """Both with as many components as the longer one; one component stands for all."""
     size = max(len(a), len(b))
