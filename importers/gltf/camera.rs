@@ -15,30 +15,40 @@ pub(super) fn cameras(root: &Root, context: &mut Context, scene: &mut Scene) -> 
         let name = camera.name.clone().unwrap_or_else(|| element.clone());
         let view = view(camera);
         if view.is_none() {
-            context.report.warn(element, "the camera is dropped: its angle or size is missing or impossible");
+            context
+                .report
+                .warn(&element, "the camera is dropped: its angle or size is missing or impossible");
         }
-        made.push(view.map(|(projection, aspect)| {
+        made.push(view.map(|(projection, written)| {
+            let aspect = written.filter(positive);
+            if aspect != written {
+                let message = "its width over its height is impossible; the shape of the image is used";
+                context.report.approximate(element, message);
+            }
             scene.cameras.push(Camera { name, projection, aspect, exposure: 1.0 })
         }));
     }
     made
 }
 
-/// Projection and aspect ratio.
+fn positive(value: &f32) -> bool {
+    value.is_finite() && *value > 0.0
+}
+
+/// Projection, and the aspect ratio as it is written.
 fn view(camera: &gltf::json::Camera) -> Option<(Projection, Option<f32>)> {
-    let positive = |value: &f32| value.is_finite() && *value > 0.0;
     match camera.type_ {
         Checked::Valid(Type::Perspective) => {
             let view = camera.perspective.as_ref()?;
             let yfov = Some(view.yfov).filter(positive).filter(|angle| *angle < PI)?;
             let projection =
                 Projection::Perspective { yfov, lens_radius: 0.0, focus_distance: 1.0, shift: [0.0; 2] };
-            Some((projection, view.aspect_ratio.filter(positive)))
+            Some((projection, view.aspect_ratio))
         }
         Checked::Valid(Type::Orthographic) => {
             let view = camera.orthographic.as_ref()?;
             let half_height = Some(view.ymag).filter(positive)?;
-            Some((Projection::Orthographic { half_height }, Some(view.xmag / half_height).filter(positive)))
+            Some((Projection::Orthographic { half_height }, Some(view.xmag / half_height)))
         }
         Checked::Invalid => None,
     }

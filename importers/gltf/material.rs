@@ -168,7 +168,12 @@ impl<'a, 'b> Reader<'a, 'b> {
             Checked::Valid(json::material::AlphaMode::Blend) => AlphaMode::Blend,
             Checked::Valid(json::material::AlphaMode::Mask) => {
                 let cutoff = source.alpha_cutoff.map_or(DEFAULT_CUTOFF, |cutoff| cutoff.0);
-                AlphaMode::Mask(if cutoff.is_finite() { cutoff } else { DEFAULT_CUTOFF })
+                if cutoff.is_finite() {
+                    return AlphaMode::Mask(cutoff);
+                }
+                let message = format!("the cutoff is not finite and is taken as {DEFAULT_CUTOFF}");
+                self.context.report.approximate(format!("{}.alphaCutoff", self.element), message);
+                AlphaMode::Mask(DEFAULT_CUTOFF)
             }
             Checked::Invalid => {
                 let element = format!("{}.alphaMode", self.element);

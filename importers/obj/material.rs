@@ -2,10 +2,13 @@
 
 use std::f32::consts::TAU;
 
-use ajar_scene::{AlphaMode, Channel, ColorSpace, Diagnostic, Input, Loss, Material, NormalMap};
+use ajar_scene::{
+    AlphaMode, Channel, ColorSpace, Diagnostic, Input, Loss, Material, NormalMap, TextureInput,
+};
 use glam::Vec3;
 
 use super::{
+    bake::Recipe,
     lines::quote,
     mtl::Definition,
     texture::{Map, Textures},
@@ -13,6 +16,23 @@ use super::{
 
 /// Roughness of sheen, which the format does not state.
 const SHEEN_ROUGHNESS: f32 = 0.3;
+
+/// The exponent at which the format's range ends; it is written for perfectly smooth surfaces.
+const MOST_SHINY: f32 = 1000.0;
+
+/// Statements that nothing here can show, and why.
+const UNSHOWN: [(&str, &str); 4] = [
+    ("disp", "surfaces are not displaced"),
+    ("decal", "there is no mask between Kd and map_Kd"),
+    ("refl", "surfaces reflect the scene itself"),
+    ("map_aat", "all textures are smoothed by samples"),
+];
+
+/// Perceptual roughness of an exponent: α = √(2 / (Ns + 2)) has the width of the Phong lobe (B. Walter et al., "Microfacet
+/// models for refraction through rough surfaces", EGSR 2007, §5.2), and roughness is √α.
+pub(super) fn roughness_of(ns: f32) -> f32 {
+    if ns >= MOST_SHINY { 0.0 } else { (2.0 / (ns.max(0.0) + 2.0)).sqrt().sqrt() }
+}
 
 /// Turns a material as written into one of ours, and its images into textures.
 pub(super) fn convert(mut of: Definition, textures: &mut Textures<'_>) -> Material {
@@ -57,19 +77,19 @@ impl Converter<'_, '_> {
         read(&self.of.source.unknown_param.remove(name)?)
     }
 
-    fn warn(&mut self, message: impl Into<String>) {
-        self.textures.warn(self.of, message.into());
+    fn warn(&mut self, statement: &str, message: impl Into<String>) {
+        self.textures.warn(self.of, statement, message.into());
     }
 
-    fn approximate(&mut self, message: impl Into<String>) {
-        self.textures.lose(self.of, message.into(), Loss::Approximated);
+    fn approximate(&mut self, statement: &str, message: impl Into<String>) {
+        self.textures.lose(self.of, statement, message.into(), Loss::Approximated);
     }
 
     /// Keeps weights and reflectances in [0, 1].
     fn unit(&mut self, name: &str, value: Vec3) -> Vec3 {
         let kept = value.clamp(Vec3::ZERO, Vec3::ONE);
         if kept != value {
-            self.approximate(format!("{name} lies outside [0, 1] and is clamped"));
+            self.approximate(name, format!("{name} lies outside [0, 1] and is clamped"));
         }
         kept
     }
@@ -87,7 +107,7 @@ impl Converter<'_, '_> {
         let texture = map.and_then(|map| self.textures.add(self.of, &map_name, &map, ColorSpace::Srgb));
         let value = match (written.map(Vec3::from_array), texture) {
             (Some(Vec3::ZERO), Some(_)) => {
-                self.approximate(format!("{name} is 0 and would hide {map_name}; taken as 1"));
+                self.approximate(name, format!("{name} is 0 and would hide {map_name}; taken as 1"));
                 Vec3::ONE
             }
             (None, Some(_)) => Vec3::ONE,
@@ -108,7 +128,7 @@ impl Converter<'_, '_> {
         let texture = map.and_then(|map| self.textures.add(self.of, &map_name, &map, ColorSpace::Raw));
         let value = match (written, texture) {
             (Some(0.0), Some(_)) => {
-                self.approximate(format!("{name} is 0 and would hide {map_name}; taken as 1"));
+                self.approximate(name, format!("{name} is 0 and would hide {map_name}; taken as 1"));
                 1.0
             }
             (None, Some(_)) => 1.0,
@@ -123,7 +143,7 @@ impl Converter<'_, '_> {
         if let (Some(d), Some(tr)) = (self.of.source.dissolve, transparency)
             && (d + tr - 1.0).abs() > 1e-3
         {
-            self.approximate("d and Tr disagree; d counts");
+            self.approximate("Tr", "d and Tr disagree; d counts");
         }
         let opacity = self.of.source.dissolve.or(transparency.map(|tr| 1.0 - tr)).unwrap_or(1.0);
         let opacity = self.unit("d or 1 - Tr", Vec3::splat(opacity)).x;
@@ -134,6 +154,9 @@ impl Converter<'_, '_> {
         {
             // One image for colour and mask: the mask is its alpha.
             map.channel.get_or_insert(Channel::A);
+        }
+        if let Some(map) = &mut map {
+            map.channel.get_or_insert(Channel::L);
         }
         (opacity, map)
     }
@@ -174,7 +197,7 @@ impl Converter<'_, '_> {
             material.metallic = Input::constant(strength / (strength + diffuse));
             material.base_color.value = (material.base_color.value + ks).min(Vec3::ONE);
             if specular.texture.is_some() {
-                self.warn("map_Ks of a mirror (illum 3, 5, 8) is dropped");
+                self.warn("map_Ks", "map_Ks of a mirror (illum 3, 5, 8) is dropped");
             }
         }
         let shines = illum >= 2 && strength > 0.0;
@@ -187,20 +210,36 @@ impl Converter<'_, '_> {
         material.emission = Input { value: emission.value.max(Vec3::ZERO), ..emission };
     }
 
-    /// `Pr`, else the exponent: α = √(2 / (Ns + 2)) has the width of the Phong lobe (B. Walter et al., "Microfacet
-    /// models for refraction through rough surfaces", EGSR 2007, §5.2), and roughness is √α. 1000, where the format's
-    /// range ends, is written for perfectly smooth surfaces.
+    /// `Pr`, else the exponent.
     fn roughness(&mut self, material: &mut Material, traced: bool) {
-        material.roughness = match (self.scalar("Pr"), self.of.source.shininess) {
+        let map = self.of.source.shininess_texture.take().map(|text| Map::parse(&text));
+        let (stated, ns) = (self.scalar("Pr"), self.of.source.shininess);
+        if stated.is_some() && map.is_some() {
+            self.warn("map_Ns", "map_Ns beside Pr is dropped");
+        }
+        let mapped = map.filter(|_| stated.is_none()).and_then(|map| self.shininess(&map, ns));
+        material.roughness = match (stated.or(mapped), ns) {
             (Some(roughness), _) => roughness,
-            (None, Some(1000.0..)) => Input::constant(0.0),
-            (None, Some(ns)) => Input::constant((2.0 / (ns.max(0.0) + 2.0)).sqrt().sqrt()),
+            (None, Some(ns)) => Input::constant(roughness_of(ns)),
             (None, None) if traced => Input::constant(0.0),
             (None, None) => material.roughness,
         };
         material.anisotropy = self.scalar("aniso").unwrap_or(material.anisotropy);
         material.anisotropy_rotation =
             TAU * self.parameter("anisor", |text| text.parse().ok()).unwrap_or(0.0);
+    }
+
+    /// The roughness of an exponent times its map.
+    fn shininess(&mut self, map: &Map, written: Option<f32>) -> Option<Input<f32>> {
+        let stated = written.filter(|&ns| ns > 0.0);
+        let ns = stated.unwrap_or(MOST_SHINY);
+        let recipe = Recipe::Roughness { base: ns * map.base, gain: ns * map.gain };
+        let texture = self.textures.bake(self.of, "map_Ns", map, recipe)?;
+        if stated.is_none() {
+            let message = format!("map_Ns is there without an Ns above 0, which is taken as {MOST_SHINY}");
+            self.approximate("map_Ns", message);
+        }
+        Some(Input { value: 1.0, texture: Some(TextureInput { texture, channel: Channel::R }) })
     }
 
     fn coat(&mut self, material: &mut Material) {
@@ -222,16 +261,28 @@ impl Converter<'_, '_> {
         let map = match (norm, bump) {
             (Some(norm), bump) => {
                 if bump.is_some() {
-                    self.warn("map_Bump beside norm is dropped");
+                    self.warn("map_Bump", "map_Bump beside norm is dropped");
                 }
                 ("norm", norm)
             }
             (None, Some(bump)) if names_normals(&bump.file) => ("map_Bump", bump),
-            (None, Some(_)) => return self.warn("map_Bump is taken as a height map and dropped"),
+            (None, Some(heights)) => return self.heights(material, &heights),
             (None, None) => return,
         };
         let texture = self.textures.add(self.of, map.0, &map.1, ColorSpace::Raw);
         material.normal_map = texture.map(|input| NormalMap { texture: input.texture, scale: map.1.bump });
+    }
+
+    /// Slopes are in proportion to heights, so that factors of heights are the normal map's scale.
+    fn heights(&mut self, material: &mut Material, map: &Map) {
+        let mirrored = [map.scale.x < 0.0, map.scale.y < 0.0];
+        let recipe = Recipe::Normals { clamp: map.clamp, mirrored };
+        let Some(texture) = self.textures.bake(self.of, "map_Bump", map, recipe) else { return };
+        self.approximate(
+            "map_Bump",
+            "map_Bump is a height map without unit; its heights are taken as -bm texels",
+        );
+        material.normal_map = Some(NormalMap { texture, scale: map.bump * map.gain });
     }
 
     fn report_leftovers(&mut self) {
@@ -241,14 +292,13 @@ impl Converter<'_, '_> {
             let hint = "light is emitted where Ke is written";
             self.textures.report.add(note.in_file(&self.of.file).at(self.of.line, 1).hint(hint));
         }
-        if self.of.source.shininess_texture.is_some() {
-            self.warn("map_Ns is dropped");
-        }
         // Maps have no order of their own.
         let mut left: Vec<_> = self.of.source.unknown_param.keys().cloned().collect();
         left.sort_unstable();
         for name in left {
-            self.warn(format!("statement {} is dropped", quote(&name)));
+            let why = UNSHOWN.iter().find(|(known, _)| *known == name);
+            let why = why.map_or(String::new(), |(_, why)| format!(": {why}"));
+            self.warn(&name, format!("statement {} is dropped{why}", quote(&name)));
         }
     }
 }

@@ -21,33 +21,35 @@
 //! | `Kd`, `map_Kd` | base colour, numbers linear as written, map sRGB |
 //! | `Ks`, `map_Ks` | `illum` 0, 1: no highlight; else weight 2·max(Ks) up to 1 (0.5 is an ordinary dielectric, as Blender writes it) and colour; absent: none, or an ordinary dielectric where the PBR extension is used |
 //! | `Ns` | roughness (2 / (Ns + 2))^¼, 0 from 1000 on; absent: 0 for mirrors and glass, else 0.5 |
+//! | `map_Ns` | factor of `Ns`, made into an image of roughness |
 //! | `Pr`, `Pm`, `Pc`, `Pcr`, `aniso`, `anisor`, all but the last with map | roughness (wins over `Ns`), metal, coat, its roughness, anisotropy, its rotation in turns |
 //! | `Ps`, `map_Ps` | grey sheen of roughness 0.3 |
 //! | `Ke`, `map_Ke` | emission in cd/m², both sides: the format has no front |
 //! | `d`, `Tr` = 1 − d | opacity, as coverage; `d` wins |
-//! | `map_d` | mask at 0.5, or factor of `d` where d < 1; read from alpha if it is the file of `map_Kd`, else from red |
+//! | `map_d` | mask at 0.5, or factor of `d` where d < 1; read from alpha if it is the file of `map_Kd`, else its luminance |
 //! | `Ni` | index of refraction where above 1, else 1.5 |
 //! | `illum` 3, 5, 8 | mirror: metal of colour Kd + Ks and weight Ks / (Kd + Ks), unless `Pm` is given |
 //! | `illum` 4, 6, 7, 9 | glass of tint `Tf` where `Ni` > 1 (or is absent and `illum` is 6 or 7, or d < 1); `d` is then its transparency, already said |
 //! | `norm`, and `map_Bump` or `bump` of a file named like a normal map | normal map of scale `-bm` |
-//! | other `map_Bump`, `map_Ns`, `disp`, `refl`, `decal`, … | dropped with a warning |
+//! | other `map_Bump` or `bump` | heights, made into a normal map; their unit, which the format leaves open, is `-bm` texels |
+//! | `disp`, `refl`, `decal`, … | dropped with a warning |
 //! | `Ka`, `map_Ka` | ignored with a note |
 //!
 //! A colour or weight of 0 with a map that can be read is taken as 1, with a warning. Texture options: see `texture.rs`.
 
+mod bake;
 mod build;
 mod geometry;
 mod lines;
 mod material;
 mod mtl;
-
 mod texture;
 
 use std::collections::{HashMap, HashSet};
 
 use ajar_scene::{Diagnostic, Feature, Id, ImportRequest, Imported, Importer, Material, Severity};
 
-use crate::report::Report;
+use crate::{budget::Budget, report::Report};
 
 use self::{geometry::Geometry, mtl::Definition, texture::Textures};
 
@@ -70,10 +72,17 @@ const FEATURES: &[Feature] = &[
     Feature { name: "MTL PBR extension", support: "Pr, Pm, Pc, Pcr, Ps, aniso, anisor" },
     Feature {
         name: "MTL maps",
-        support: "map_Kd, map_Ks, map_Ke, map_d, map_Pr, map_Pm, map_Pc, map_Pcr, map_Ps, norm",
+        support: "map_Kd, map_Ks, map_Ke, map_Ns, map_d, map_Pr, map_Pm, map_Pc, map_Pcr, map_Ps, norm; disp, refl and \
+                  decal dropped",
     },
-    Feature { name: "map_Bump", support: "normal maps, told by the file's name; height maps dropped" },
-    Feature { name: "map options", support: "-s -o -mm -bm -clamp -imfchan -colorspace; others dropped" },
+    Feature {
+        name: "map_Bump, bump",
+        support: "normal maps, told by the file's name; others are heights, which become normal maps",
+    },
+    Feature {
+        name: "map options",
+        support: "-s -o -mm -bm -clamp -imfchan -blendu -blendv -colorspace; -t -boost -texres -type -cc dropped",
+    },
 ];
 
 impl Importer for Obj {
@@ -190,7 +199,8 @@ fn materials<'a>(
         }
     }
     let Imported { scene, files, .. } = imported;
-    let mut textures = Textures { request, scene, files, report, images: HashMap::new() };
+    let budget = Budget::new(request.memory_limit);
+    let mut textures = Textures { request, scene, files, report, images: HashMap::new(), budget };
     let (mut converted, mut missing) = (HashMap::new(), HashSet::new());
     for (part, line) in &geometry.parts {
         let Some(name) = part.material.as_deref().filter(|&name| !converted.contains_key(name)) else {

@@ -3,7 +3,10 @@
 //! `tobj` gives up on a whole library for one bad statement, panics on `Kd 0.5` and takes NaN, so every statement that
 //! it reads as numbers is checked and written out plainly before, and materials are handed over one by one.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+};
 
 use ajar_scene::Diagnostic;
 
@@ -19,6 +22,15 @@ pub(super) struct Definition {
     pub folder: String,
     /// Line of `newmtl`.
     pub line: usize,
+    /// Lines of its statements, by the names that `tobj` knows.
+    pub lines: HashMap<String, usize>,
+}
+
+/// A material on the way: its statements as `tobj` reads them, and where they are.
+struct Block {
+    text: String,
+    line: usize,
+    lines: HashMap<String, usize>,
 }
 
 /// Statements that are colours; one number means grey.
@@ -26,24 +38,24 @@ const COLORS: [&str; 5] = ["Ka", "Kd", "Ks", "Ke", "Tf"];
 /// Statements that are one number.
 const NUMBERS: [&str; 11] = ["Ns", "Ni", "d", "Tr", "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"];
 /// Statements that name an image.
-const MAPS: [&str; 14] = [
+const MAPS: [&str; 17] = [
     "map_Ka", "map_Kd", "map_Ks", "map_Ke", "map_Ns", "map_d", "map_Bump", "bump", "norm", "map_Pr",
-    "map_Pm", "map_Pc", "map_Pcr", "map_Ps",
+    "map_Pm", "map_Pc", "map_Pcr", "map_Ps", "disp", "decal", "refl",
 ];
 
 /// Reads all materials of a library; what cannot be read of it is reported.
 pub(super) fn parse(text: &str, file: &Path, folder: &str, report: &mut Report) -> Vec<Definition> {
     let mut definitions = Vec::new();
-    // The statements of the material being read, and the line of its `newmtl`.
-    let mut open: Option<(String, usize)> = None;
-    let mut close = |open: Option<(String, usize)>, report: &mut Report| {
-        let Some((block, line)) = open else { return };
-        match tobj::load_mtl_buf(&mut block.as_bytes()) {
+    let mut open: Option<Block> = None;
+    let mut close = |open: Option<Block>, report: &mut Report| {
+        let Some(Block { text, line, lines }) = open else { return };
+        match tobj::load_mtl_buf(&mut text.as_bytes()) {
             Ok((sources, _)) => definitions.extend(sources.into_iter().map(|source| Definition {
                 source,
                 file: file.to_owned(),
                 folder: folder.to_owned(),
                 line,
+                lines: lines.clone(),
             })),
             Err(e) => report.add(
                 Diagnostic::warning(format!("the material cannot be read: {e}")).in_file(file).at(line, 1),
@@ -56,14 +68,17 @@ pub(super) fn parse(text: &str, file: &Path, folder: &str, report: &mut Report) 
             if line.rest().is_empty() {
                 report.add(Diagnostic::warning("a material has no name").in_file(file).at(line.number, 1));
             } else {
-                open = Some((format!("newmtl {}\n", line.rest()), line.number));
+                let text = format!("newmtl {}\n", line.rest());
+                open = Some(Block { text, line: line.number, lines: HashMap::new() });
             }
             continue;
         }
         match (plain(&line), &mut open) {
-            (Ok(statement), Some((block, _))) => {
-                block.push_str(&statement);
-                block.push('\n');
+            (Ok(statement), Some(block)) => {
+                let name = statement.split_ascii_whitespace().next().unwrap_or_default();
+                block.lines.insert(name.to_owned(), line.number);
+                block.text.push_str(&statement);
+                block.text.push('\n');
             }
             (Ok(_), None) => report.add(
                 Diagnostic::warning("a statement belongs to no material").in_file(file).at(line.number, 1),
@@ -108,5 +123,11 @@ fn plain(line: &Line<'_>) -> Result<String, Diagnostic> {
     if line.rest().is_empty() && find(&MAPS).is_some() {
         return Err(needs("a file"));
     }
-    Ok(format!("{} {}", find(&MAPS).unwrap_or(written), line.rest()))
+    let name = match find(&MAPS) {
+        // Two names of one statement.
+        Some("bump") => "map_Bump",
+        Some(name) => name,
+        None => written,
+    };
+    Ok(format!("{name} {}", line.rest()))
 }

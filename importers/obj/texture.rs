@@ -1,8 +1,10 @@
 //! Texture statements of a material: options, file name, and the texture they make.
 //!
 //! Options after the 1995 specification of MTL: `-s` and `-o` scale and shift the coordinates, `-mm base gain` makes
-//! `base + gain · texel`, `-clamp on` ends the image at its edge, `-imfchan` picks the channel of scalars (luminance is
-//! read from red, which is the same for grey images), `-bm` scales bumps; `-colorspace` is a later addition.
+//! `base + gain · texel`, `-clamp on` ends the image at its edge, `-blendu off -blendv off` shows texels as squares,
+//! `-imfchan` picks the channel of scalars, `-bm` scales bumps; `-colorspace` is a later addition. Turbulence (`-t`),
+//! sharpening (`-boost`), colour correction (`-cc on`), `-texres` and the shapes of reflection maps (`-type`) are named and
+//! dropped.
 
 use std::{
     collections::HashMap,
@@ -10,13 +12,16 @@ use std::{
 };
 
 use ajar_scene::{
-    Channel, ColorSpace, Diagnostic, Id, Image, ImageSource, ImportRequest, Loss, Scene, Texture,
+    Channel, ColorSpace, Diagnostic, Filter, Id, Image, ImageSource, ImportRequest, Loss, Scene, Texture,
     TextureInput, Wrap,
 };
 use glam::{Affine2, Mat2, Vec2, Vec4};
 
-use super::mtl::Definition;
-use crate::report::Report;
+use super::{
+    bake::{self, Recipe},
+    mtl::Definition,
+};
+use crate::{budget::Budget, report::Report};
 
 /// The options and the file name of one statement.
 pub(super) struct Map {
@@ -26,6 +31,8 @@ pub(super) struct Map {
     pub base: f32,
     pub gain: f32,
     pub clamp: bool,
+    /// Whether texels blend along u and v.
+    pub blend: [bool; 2],
     pub channel: Option<Channel>,
     pub bump: f32,
     pub color_space: Option<ColorSpace>,
@@ -61,6 +68,7 @@ impl Map {
             base: 0.0,
             gain: 1.0,
             clamp: false,
+            blend: [true; 2],
             channel: None,
             bump: 1.0,
             color_space: None,
@@ -101,7 +109,10 @@ impl Map {
             ("-mm", _) => return (self.base, self.gain) = (number(0, 0.0), number(1, 1.0)),
             ("-bm", _) => return self.bump = number(0, 1.0),
             ("-clamp", _) => return self.clamp = word == "on",
-            ("-imfchan", "r" | "l") => return self.channel = Some(Channel::R),
+            ("-blendu", _) => return self.blend[0] = word != "off",
+            ("-blendv", _) => return self.blend[1] = word != "off",
+            ("-imfchan", "l") => return self.channel = Some(Channel::L),
+            ("-imfchan", "r") => return self.channel = Some(Channel::R),
             ("-imfchan", "g") => return self.channel = Some(Channel::G),
             ("-imfchan", "b") => return self.channel = Some(Channel::B),
             ("-imfchan", "m") => return self.channel = Some(Channel::A),
@@ -109,8 +120,9 @@ impl Map {
             ("-colorspace", "linear" | "raw" | "non-color") => {
                 return self.color_space = Some(ColorSpace::Raw);
             }
-            // The defaults.
-            ("-blendu" | "-blendv", "on") | ("-cc", "off") => true,
+            // What they are without being said.
+            ("-cc", "off") => true,
+            ("-t", _) => arguments.iter().all(|a| a.parse() == Ok(0.0)),
             _ => false,
         };
         if !understood {
@@ -144,40 +156,82 @@ pub(super) struct Textures<'a> {
     pub scene: &'a mut Scene,
     pub files: &'a mut Vec<PathBuf>,
     pub report: &'a mut Report,
-    pub images: HashMap<PathBuf, Id<Image>>,
+    /// By the file and what was made of it.
+    pub images: HashMap<(PathBuf, String), Id<Image>>,
+    /// For images that are made of others.
+    pub budget: Budget,
 }
 
 impl Textures<'_> {
     /// The texture of statement `name`, or nothing and a warning when its file cannot be read.
     pub fn add(&mut self, of: &Definition, name: &str, map: &Map, space: ColorSpace) -> Option<TextureInput> {
-        for option in &map.dropped {
-            self.warn(of, format!("option {option} of {name} is dropped"));
-        }
-        let path = match self.find(&of.folder, &map.file) {
-            Ok(path) => path,
-            Err(e) => {
-                self.warn(of, format!("{name}: {}", e.message));
-                return None;
-            }
-        };
-        let next = self.scene.images.len();
-        let image = *self.images.entry(path.clone()).or_insert(Id::new(next));
-        if image.index() == next {
-            self.scene.images.push(Image { name: map.file.clone(), source: ImageSource::File(path) });
-        }
-        let wrap = if map.clamp { Wrap::Clamp } else { Wrap::Repeat };
-        // The options speak of coordinates from the bottom left: v = 1 − v', and back.
-        let shift = Vec2::new(map.offset.x, 1.0 - map.scale.y - map.offset.y);
-        let texture = self.scene.textures.push(Texture {
+        let key = (self.file(of, name, map)?, String::new());
+        let image = self.images.get(&key).copied().unwrap_or_else(|| {
+            let source = ImageSource::File(key.0.clone());
+            self.keep(key, Image { name: map.file.clone(), source })
+        });
+        let levels = Texture {
             color_space: map.color_space.unwrap_or(space),
-            wrap_u: wrap,
-            wrap_v: wrap,
-            transform: Affine2::from_mat2_translation(Mat2::from_diagonal(map.scale), shift),
             scale: Vec4::splat(map.gain),
             bias: Vec4::splat(map.base),
             ..Texture::new(image)
-        });
-        Some(TextureInput { texture, channel: map.channel.unwrap_or_default() })
+        };
+        Some(TextureInput { texture: self.placed(map, levels), channel: map.channel.unwrap_or_default() })
+    }
+
+    /// The texture of an image made of that of statement `name`, which is a scalar, or nothing and a warning.
+    pub fn bake(&mut self, of: &Definition, name: &str, map: &Map, recipe: Recipe) -> Option<Id<Texture>> {
+        let path = self.file(of, name, map)?;
+        let channel = map.channel.unwrap_or(Channel::L);
+        let read = bake::Read { channel, srgb: map.color_space == Some(ColorSpace::Srgb) };
+        let key = (path, format!("{read:?} {recipe:?}"));
+        let image = match self.images.get(&key) {
+            Some(&known) => known,
+            None => match bake::bake(&key.0, read, recipe, &self.budget) {
+                Ok(bytes) => {
+                    let source = ImageSource::Embedded(bytes.into());
+                    self.keep(key, Image { name: format!("{} ({name})", map.file), source })
+                }
+                Err(why) => {
+                    self.warn(of, name, format!("{name}: \"{}\" {why}", map.file.escape_debug()));
+                    return None;
+                }
+            },
+        };
+        Some(self.placed(map, Texture::new(image)))
+    }
+
+    fn keep(&mut self, key: (PathBuf, String), image: Image) -> Id<Image> {
+        let image = self.scene.images.push(image);
+        self.images.insert(key, image);
+        image
+    }
+
+    /// The file of a statement; what of its options is dropped is told.
+    fn file(&mut self, of: &Definition, name: &str, map: &Map) -> Option<PathBuf> {
+        for option in &map.dropped {
+            self.warn(of, name, format!("option {option} of {name} is dropped"));
+        }
+        if map.blend[0] != map.blend[1] {
+            let message = format!("{name} blends texels one way only; taken as both");
+            self.lose(of, name, message, Loss::Approximated);
+        }
+        let found = self.find(&of.folder, &map.file);
+        found.map_err(|e| self.warn(of, name, format!("{name}: {}", e.message))).ok()
+    }
+
+    /// A texture where the options put it.
+    fn placed(&mut self, map: &Map, levels: Texture) -> Id<Texture> {
+        let wrap = if map.clamp { Wrap::Clamp } else { Wrap::Repeat };
+        // The options speak of coordinates from the bottom left: v = 1 − v', and back.
+        let shift = Vec2::new(map.offset.x, 1.0 - map.scale.y - map.offset.y);
+        self.scene.textures.push(Texture {
+            wrap_u: wrap,
+            wrap_v: wrap,
+            filter: if map.blend == [false; 2] { Filter::Nearest } else { Filter::Linear },
+            transform: Affine2::from_mat2_translation(Mat2::from_diagonal(map.scale), shift),
+            ..levels
+        })
     }
 
     /// Looks beside the library, then beside the OBJ file.
@@ -190,14 +244,15 @@ impl Textures<'_> {
         found
     }
 
-    /// Reports something about the material that is dropped.
-    pub fn warn(&mut self, of: &Definition, message: String) {
-        self.lose(of, message, Loss::Dropped);
+    /// Reports that a statement of the material, or something about it, is dropped.
+    pub fn warn(&mut self, of: &Definition, statement: &str, message: String) {
+        self.lose(of, statement, message, Loss::Dropped);
     }
 
-    /// Reports what of the material was approximated or dropped.
-    pub fn lose(&mut self, of: &Definition, message: String, loss: Loss) {
-        let warning = Diagnostic::warning(message).losing(loss).in_file(&of.file).at(of.line, 1);
+    /// Reports what of a statement was approximated or dropped.
+    pub fn lose(&mut self, of: &Definition, statement: &str, message: String, loss: Loss) {
+        let line = of.lines.get(statement).copied().unwrap_or(of.line);
+        let warning = Diagnostic::warning(message).losing(loss).in_file(&of.file).at(line, 1);
         self.report.add(warning.element(format!("newmtl {}", of.source.name.escape_debug())));
     }
 }

@@ -8,17 +8,19 @@ use super::{Exit, print};
 type Format = (&'static str, Vec<String>, Vec<(&'static str, &'static str)>);
 
 /// The tables of a scene file.
-const SCENE: [(&str, &str); 6] = [
+const SCENE: [(&str, &str); 8] = [
+    ("extends", "a scene file that this one lies over"),
     ("[[import]]", "any file listed here, placed, turned, scaled, with its unit and up axis"),
     ("[[camera]]", "perspective with thin lens and shift, or orthographic"),
     ("[[light]]", "point, spot, directional, rect, disk, sphere, cylinder, environment"),
-    ("[material.NAME]", "overrides parameters of imported materials; the name may hold * and ?"),
+    ("[material.NAME]", "changes parameters of imported materials, by name or path, which may hold * and ?"),
+    ("[node.NAME]", "hides, moves and relights imported nodes, likewise"),
     ("[render]", "integrator, camera, size, stop rules, seed, path length, crop"),
     ("[output]", "paths, tone map, exposure, layers, precision"),
 ];
 
 /// What textures may be; the bytes of a file decide, not its name.
-const IMAGES: [(&str, &str); 7] = [
+const IMAGES: [(&str, &str); 8] = [
     ("PNG", "8 and 16 bits a channel"),
     ("JPEG", "baseline and progressive"),
     ("WebP", "lossy and lossless"),
@@ -26,6 +28,7 @@ const IMAGES: [(&str, &str); 7] = [
     ("TGA, BMP", "8 bits a channel"),
     ("Radiance HDR", "RGBE"),
     ("OpenEXR", "half, float; flat images"),
+    ("KTX2", "Basis Universal (ETC1S, UASTC, ASTC), or a byte a channel; the first level"),
 ];
 
 #[derive(Debug, clap::Args)]

@@ -36,7 +36,7 @@ pub use exit::Exit;
 const EXIT_CODES: &str = "Exit codes: 0 ok, 1 render failed, 2 usage, 3 asset or scene invalid,\n\
     4 resource limit, 5 interrupted with a partial result saved.";
 
-/// A renderer for asset pipelines: glTF, OBJ and scene.toml to OpenEXR.
+/// A renderer for asset pipelines: glTF, OBJ, USD and Ajar scenes to OpenEXR.
 #[derive(Debug, Parser)]
 #[command(name = "ajar", version, max_term_width = 100, propagate_version = true)]
 #[command(after_help = EXIT_CODES)]

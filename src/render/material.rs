@@ -10,6 +10,9 @@ use crate::{
     texture::Textures,
 };
 
+/// Weights of red, green and blue in a luminance (ITU-R BT.709).
+const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
+
 /// Where on a surface a material is asked for.
 pub trait Place {
     /// Texture coordinates of a set; the origin where the mesh has no such set.
@@ -230,6 +233,7 @@ fn number(input: &Input<f32>, textures: &Textures, place: &impl Place) -> f64 {
         Channel::G => texel.y,
         Channel::B => texel.z,
         Channel::A => texel.w,
+        Channel::L => texel.truncate().dot(LUMINANCE),
     };
     f64::from(input.value) * f64::from(channel)
 }

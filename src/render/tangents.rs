@@ -3,7 +3,7 @@
 
 use ajar_scene::Mesh;
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use crate::math::Frame;
 
@@ -11,22 +11,22 @@ use crate::math::Frame;
 ///
 /// The tangent points to where u grows, the bitangent to where v falls: up in the image, as glTF and normal maps with
 /// green up have it. Corners that share a vertex can differ where texture coordinates are mirrored. A corner whose
-/// coordinates give no direction gets some tangent perpendicular to its normal.
+/// coordinates give no direction gets some tangent perpendicular to its normal. Triangles of a mesh without normals are flat.
 ///
-/// `None` if the mesh has no normals or no such set of texture coordinates, or if its indices dangle.
+/// `None` if the mesh has no such set of texture coordinates, or if its indices dangle.
 pub fn generate(mesh: &Mesh, uv_set: usize) -> Option<Vec<[Vec4; 3]>> {
-    let normals = mesh.normals.as_deref()?;
+    let normals = mesh.normals.as_deref();
     let uvs = mesh.uvs.get(uv_set)?.as_slice();
-    let vertices = mesh.positions.len().min(normals.len()).min(uvs.len());
+    let vertices = mesh.positions.len().min(normals.map_or(usize::MAX, <[Vec3]>::len)).min(uvs.len());
     if mesh.triangles.iter().flatten().any(|&vertex| vertex as usize >= vertices) {
         return None;
     }
     let mut corners = Corners { mesh, normals, uvs, tangents: vec![[Vec4::ZERO; 3]; mesh.triangles.len()] };
     generate_tangents(&mut corners).ok()?;
-    let Corners { mut tangents, .. } = corners;
-    for (tangents, vertices) in tangents.iter_mut().zip(&mesh.triangles) {
-        for (tangent, &vertex) in tangents.iter_mut().zip(vertices) {
-            *tangent = usable(*tangent, normals[vertex as usize]);
+    let mut tangents = std::mem::take(&mut corners.tangents);
+    for (face, tangents) in tangents.iter_mut().enumerate() {
+        for (corner, tangent) in tangents.iter_mut().enumerate() {
+            *tangent = usable(*tangent, corners.normal_of(face, corner));
         }
     }
     Some(tangents)
@@ -39,14 +39,14 @@ fn usable(tangent: Vec4, normal: Vec3) -> Vec4 {
     if beside && t.is_finite() && (t.length() - 1.0).abs() < 1e-2 {
         return tangent;
     }
-    let normal = normal.as_dvec3().try_normalize().unwrap_or(glam::DVec3::Z);
+    let normal = normal.as_dvec3().try_normalize().unwrap_or(DVec3::Z);
     Frame::from_z(normal).x.as_vec3().extend(1.0)
 }
 
 /// A mesh as the generator reads it: no shared vertices, v growing upwards.
 struct Corners<'a> {
     mesh: &'a Mesh,
-    normals: &'a [Vec3],
+    normals: Option<&'a [Vec3]>,
     uvs: &'a [Vec2],
     tangents: Vec<[Vec4; 3]>,
 }
@@ -54,6 +54,16 @@ struct Corners<'a> {
 impl Corners<'_> {
     fn vertex(&self, face: usize, corner: usize) -> usize {
         self.mesh.triangles[face][corner] as usize
+    }
+
+    /// That of the vertex, or of the triangle.
+    fn normal_of(&self, face: usize, corner: usize) -> Vec3 {
+        if let Some(normals) = self.normals {
+            return normals[self.vertex(face, corner)];
+        }
+        let [a, b, c] =
+            self.mesh.triangles[face].map(|vertex| self.mesh.positions[vertex as usize].as_dvec3());
+        (b - a).cross(c - a).normalize_or(DVec3::Z).as_vec3()
     }
 }
 
@@ -71,7 +81,7 @@ impl Geometry for Corners<'_> {
     }
 
     fn normal(&self, face: usize, vert: usize) -> [f32; 3] {
-        self.normals[self.vertex(face, vert)].to_array()
+        self.normal_of(face, vert).to_array()
     }
 
     fn tex_coord(&self, face: usize, vert: usize) -> [f32; 2] {
@@ -145,11 +155,17 @@ mod tests {
         }
     }
 
+    /// Normal maps show on flat triangles too.
+    #[test]
+    fn meshes_without_normals_are_flat() {
+        let upright = square([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]]);
+        check(&Mesh { normals: None, ..upright }, Vec3::X, Vec3::Y);
+    }
+
     #[test]
     fn missing_attributes_and_dangling_indices_give_none() {
         let mesh = square([[0.0; 2]; 4]);
         assert!(generate(&mesh, 0).is_none() && generate(&mesh, 2).is_none());
-        assert!(generate(&Mesh { normals: None, ..mesh.clone() }, 1).is_none());
         assert!(generate(&Mesh { triangles: vec![[0, 1, 9]], ..mesh }, 1).is_none());
     }
 }

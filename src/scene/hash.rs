@@ -219,6 +219,7 @@ impl Sink {
             Channel::G => 1,
             Channel::B => 2,
             Channel::A => 3,
+            Channel::L => 4,
         });
     }
 

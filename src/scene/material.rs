@@ -18,6 +18,8 @@ pub enum Channel {
     B,
     /// Alpha.
     A,
+    /// Luminance of red, green and blue.
+    L,
 }
 
 /// A texture as one input sees it.

@@ -61,6 +61,23 @@ impl Scene {
         }
         found
     }
+
+    /// Calls `visit` for every node that [`placed`](Self::placed) finds, with its path: the names from a root down to it,
+    /// joined by `/`.
+    pub fn paths<'a>(&'a self, mut visit: impl FnMut(&Placed<'a>, &str)) {
+        // One text for all, of which a node takes over what is above it: hierarchies may be deep.
+        let (mut path, mut ends) = (String::new(), Vec::new());
+        for placed in self.placed() {
+            ends.truncate(placed.depth);
+            path.truncate(ends.last().copied().unwrap_or(0));
+            if placed.depth > 0 {
+                path.push('/');
+            }
+            path.push_str(&placed.node.name);
+            ends.push(path.len());
+            visit(&placed, &path);
+        }
+    }
 }
 
 /// Whether a transform flattens space, to within rounding, or is not finite.

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::Id;
 
-/// Encoded pixels; importers leave files as they are, but for cube maps, which they unroll.
+/// Encoded pixels; importers leave files as they are, but for cube maps, which they unroll, and maps of heights and
+/// exponents, of which they make normals and roughness.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub enum ImageSource {
     /// A file, already checked to lie below a folder the scene may read.

@@ -77,6 +77,10 @@ fn inspect_counts_what_is_there() {
     assert_eq!(json["bounds"]["size"], serde_json::json!([1.0, 1.0, 0.0]));
     assert_eq!(json["nodes"][0]["name"], "leaf");
     assert_eq!(json["materials"][0]["name"], "clay");
+    assert_eq!(
+        (&json["materials"][0]["path"], &json["materials"][0]["shown"]),
+        (&"leaf/clay".into(), &1.into())
+    );
     assert_eq!(json["materials"][0]["parameters"]["roughness"]["value"], 0.25);
     assert!(json["materials"][0]["parameters"]["metallic"].is_null(), "as the default");
     assert!(json["diagnostics"].as_array().unwrap().len() >= 2, "{}", json["diagnostics"]);

@@ -19,7 +19,11 @@ fn materials_of_assets_and_scenes_change() {
     bench.write("placed.toml", "[[import]]\nfile = \"leaf.gltf\"\n[material.\"*\"]\nroughness = 0.9\n");
     for file in ["leaf.gltf", "placed.toml"] {
         let plain = inspect(&bench, file, &[]);
-        let changed = inspect(&bench, file, &["material.clay.roughness=0.125", "material.'cl*'.ior=2"]);
+        let changed = inspect(
+            &bench,
+            file,
+            &["material.clay.roughness=0.125", "material.'cl*'.ior=3", "material./leaf/clay.ior=2"],
+        );
         let parameters = &changed["materials"][0]["parameters"];
         assert_eq!(
             (&parameters["roughness"]["value"], &parameters["ior"]),

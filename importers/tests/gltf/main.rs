@@ -21,6 +21,7 @@ mod lights;
 mod materials;
 mod motion;
 mod nodes;
+mod not_finite;
 mod surroundings;
 mod variants;
 

@@ -64,7 +64,11 @@ fn real_files() {
         options.scene.textures.is_empty() && said.contains("map_Kd: \"diffuse.jpg\" cannot be read"),
         "{said}"
     );
-    assert!(said.contains("statement \"Kt\" is dropped"));
+    for lost in
+        ["statement \"Kt\" is dropped", "option -t of map_Ns is dropped", "map_Bump: \"bumpmap.jpg\" cannot"]
+    {
+        assert!(said.contains(lost), "{lost}: {said}");
+    }
     let (both, _, said) = load("tr-and-d-issue-43");
     assert!(said.contains("d and Tr disagree"));
     assert!(both.scene.materials.iter().all(|m| m.opacity.value == 0.75));

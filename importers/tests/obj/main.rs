@@ -5,6 +5,7 @@
 mod assets;
 mod geometry;
 mod hostile;
+mod maps;
 mod materials;
 
 use std::fs;

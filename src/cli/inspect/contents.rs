@@ -93,6 +93,10 @@ pub(super) struct MeshEntry<'a> {
 #[derive(Serialize)]
 pub(super) struct MaterialEntry<'a> {
     pub name: &'a str,
+    /// The first path that it is shown at, as `[material]` tables may name it.
+    pub path: Option<String>,
+    /// At how many places it is shown.
+    pub shown: usize,
     /// Parameters that differ from the default material, as the scene graph has them.
     pub parameters: Map<String, Value>,
 }
@@ -106,6 +110,8 @@ pub(super) struct TextureEntry<'a> {
     pub bytes: Option<u64>,
     pub color_space: Value,
     pub uv_set: u32,
+    /// What else differs from how textures are read by default, as the scene graph has it.
+    pub parameters: Map<String, Value>,
 }
 
 impl<'a> Contents<'a> {
@@ -124,7 +130,7 @@ impl<'a> Contents<'a> {
             }),
             nodes: nodes(&placed),
             meshes,
-            materials: scene.materials.iter().map(material).collect(),
+            materials: materials(scene),
             textures: scene
                 .textures
                 .iter()
@@ -206,17 +212,34 @@ fn meshes<'a>(scene: &'a Scene, placed: &[Placed<'_>]) -> Vec<MeshEntry<'a>> {
     scene.meshes.iter().zip(uses).map(entry).collect()
 }
 
-/// The fields of a material, with single-precision numbers as short as they can be written.
-fn fields(material: &Material) -> Map<String, Value> {
-    let text = serde_json::to_string(material).unwrap_or_default();
-    serde_json::from_str(&text).unwrap_or_default()
+/// The fields that differ from the default, but for those that are told apart, with single-precision numbers as short as
+/// they can be written.
+fn differing<T: Serialize>(it: &T, default: &T, apart: &[&str]) -> Map<String, Value> {
+    let fields = |it: &T| -> Map<String, Value> {
+        let text = serde_json::to_string(it).unwrap_or_default();
+        serde_json::from_str(&text).unwrap_or_default()
+    };
+    let (mut found, default) = (fields(it), fields(default));
+    found.retain(|key, value| !apart.contains(&key.as_str()) && default.get(key) != Some(value));
+    found
+}
+
+fn materials(scene: &Scene) -> Vec<MaterialEntry<'_>> {
+    let mut entries: Vec<_> = scene.materials.iter().map(material).collect();
+    scene.paths(|placed, path| {
+        for mesh in placed.node.meshes.iter().filter_map(|&id| scene.meshes.get(id)) {
+            let material = placed.node.material.or(mesh.material);
+            let Some(entry) = material.and_then(|id| entries.get_mut(id.index())) else { continue };
+            entry.shown += 1;
+            entry.path.get_or_insert_with(|| format!("{path}/{}", entry.name));
+        }
+    });
+    entries
 }
 
 fn material(material: &Material) -> MaterialEntry<'_> {
-    let default = fields(&Material::default());
-    let mut parameters = fields(material);
-    parameters.retain(|key, value| key != "name" && default.get(key) != Some(value));
-    MaterialEntry { name: &material.name, parameters }
+    let parameters = differing(material, &Material::default(), &["name"]);
+    MaterialEntry { name: &material.name, path: None, shown: 0, parameters }
 }
 
 fn texture<'a>(texture: &Texture, image: &'a Image) -> TextureEntry<'a> {
@@ -227,5 +250,6 @@ fn texture<'a>(texture: &Texture, image: &'a Image) -> TextureEntry<'a> {
         ImageSource::Embedded(bytes) => (None, Some(bytes.len() as u64)),
     };
     let color_space = json!(texture.color_space);
-    TextureEntry { image: &image.name, file, bytes, color_space, uv_set: texture.uv_set }
+    let parameters = differing(texture, &Texture::new(texture.image), &["color_space", "uv_set"]);
+    TextureEntry { image: &image.name, file, bytes, color_space, uv_set: texture.uv_set, parameters }
 }

@@ -157,7 +157,12 @@ fn material(material: &MaterialEntry<'_>, textures: &[TextureEntry<'_>]) -> Stri
         .map(|(key, value)| format!("{key} {}", parameter(value, textures)))
         .collect();
     let parameters = if parameters.is_empty() { "as the default".into() } else { parameters.join(", ") };
-    format!("{}: {parameters}", quoted(material.name))
+    let place = material.path.as_deref().map_or("shown nowhere".into(), plain);
+    let more = match material.shown {
+        0 | 1 => String::new(),
+        shown => format!(" and {}", many(shown - 1, "more place")),
+    };
+    format!("{} ({place}{more}): {parameters}", quoted(material.name))
 }
 
 /// A parameter: a plain value, or an input or normal map with its texture.
@@ -256,5 +261,7 @@ fn texture(texture: &TextureEntry<'_>) -> String {
     };
     let size = texture.bytes.map_or("missing".into(), bytes);
     let uv_set = if texture.uv_set > 0 { format!(", UV set {}", texture.uv_set) } else { String::new() };
-    format!("{}: {place}, {size}, {}{uv_set}", quoted(texture.image), plain_value(&texture.color_space))
+    let others = texture.parameters.iter().map(|(key, value)| format!(", {key} {}", plain_value(value)));
+    let color_space = plain_value(&texture.color_space);
+    format!("{}: {place}, {size}, {color_space}{uv_set}{}", quoted(texture.image), others.collect::<String>())
 }

@@ -1,8 +1,14 @@
-//! Patterns for names: `*` is any run of characters, `?` any one character.
+//! Patterns for names and paths: `*` is any run of characters, `?` any one character.
 
 /// Whether `pattern` has a character of its own meaning.
 pub(super) fn is_glob(pattern: &str) -> bool {
     pattern.contains(['*', '?'])
+}
+
+/// Whether `path` fits `pattern`: as a whole or, where the pattern begins with `/`, from some name on. So paths that an
+/// asset's own format writes fit wherever the asset is placed.
+pub(super) fn matches_path(pattern: &str, path: &str) -> bool {
+    matches(pattern, path) || pattern.starts_with('/') && matches(&format!("*{pattern}"), &format!("/{path}"))
 }
 
 /// Whether the whole of `name` fits `pattern`. Takes time in proportion to the product of the lengths at most: on a
@@ -55,6 +61,23 @@ mod tests {
             assert_eq!(matches(pattern, name), fits, "{pattern} {name}");
         }
         assert!(is_glob("a?") && is_glob("*") && !is_glob("plain.001"));
+    }
+
+    #[test]
+    fn paths() {
+        for (pattern, fits) in [
+            ("car/World/Wheel", true),
+            ("*/Wheel", true),
+            ("car/*", true),
+            ("World/Wheel", false),
+            ("/World/Wheel", true),
+            ("/World/*", true),
+            ("/car/*", true),
+            ("/orld/Wheel", false),
+            ("/World", false),
+        ] {
+            assert_eq!(matches_path(pattern, "car/World/Wheel"), fits, "{pattern}");
+        }
     }
 
     #[test]

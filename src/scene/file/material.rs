@@ -9,43 +9,44 @@ use super::{
     glob,
     keys::Keys,
     report::{Complaint, advice},
+    shown,
     texture::{Assets, Use},
     value::{ANY, choice, distance_or_infinity, flag, number, numbers},
 };
 use crate::{AlphaMode, Input, Material, NormalMap};
 
-/// One change, applied to every material whose name fits.
+/// One change, applied to every material that fits.
 type Edit = Box<dyn Fn(&mut Material)>;
 
 /// Reads one table and applies it to the materials that fit `pattern`. `complete` says that all imports were read, so
 /// that a name which fits nothing is the file's mistake.
 pub(super) fn read(pattern: &str, mut keys: Keys<'_>, assets: &mut Assets, complete: bool) {
     let edits = edits(&mut keys, assets);
-    let mut fits = 0;
-    for material in assets.scene.materials.iter_mut().filter(|it| glob::matches(pattern, &it.name)) {
+    let fitting = shown::fitting(pattern, &mut assets.scene);
+    for &id in &fitting {
+        let material = &mut assets.scene.materials[id];
         edits.iter().for_each(|edit| edit(material));
-        fits += 1;
     }
-    if fits == 0 && complete {
+    if fitting.is_empty() && complete {
         unmatched(pattern, &keys, assets);
     }
     keys.finish();
 }
 
 fn unmatched(pattern: &str, keys: &Keys<'_>, assets: &Assets) {
-    let names = || {
-        let mut names: Vec<_> =
-            assets.scene.materials.iter().map(|material| material.name.as_str()).collect();
-        names.sort_unstable();
-        names.dedup();
-        names
-    };
+    // Who writes the path of a material in its own file means the name at its end.
+    let name = pattern.rsplit('/').next().unwrap_or(pattern);
+    let mut names: Vec<_> = assets.scene.materials.iter().map(|material| material.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
     if glob::is_glob(pattern) {
         keys.warn("no imported material fits this pattern");
+    } else if pattern.contains('/') {
+        let complaint = Complaint::new("no import shows a material at this path");
+        keys.reject(complaint.hint(advice(name, names)));
     } else {
-        let complaint =
-            Complaint::new("no import has a material of this name").hint(advice(pattern, names()));
-        keys.reject(complaint);
+        let complaint = Complaint::new("no import has a material of this name");
+        keys.reject(complaint.hint(advice(name, names)));
     }
 }
 

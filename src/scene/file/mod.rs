@@ -8,6 +8,7 @@ mod camera;
 mod choice;
 mod glob;
 mod keys;
+mod lamp;
 mod layers;
 mod light;
 mod load;
@@ -17,6 +18,7 @@ mod overrides;
 mod placement;
 mod report;
 mod settings;
+mod shown;
 mod source;
 #[cfg(test)]
 mod tests;

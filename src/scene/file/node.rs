@@ -1,46 +1,52 @@
 //! `[node."Lamp*"]`: changes to imported nodes.
 
-use glam::{DAffine3, DMat3, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::{
     glob,
     keys::Keys,
-    placement,
+    lamp, placement,
     report::{Complaint, advice},
     texture::Assets,
-    value::{flag, number, numbers, text, vector},
+    value::{flag, text, vector},
 };
-use crate::{Id, LightKind, Material, Node, Scene};
+use crate::{Id, Material, Node, Scene};
 
-/// What a table says.
+/// What a table says about nodes.
 struct Edit {
     visible: Option<bool>,
     translate: DVec3,
     turn: DMat3,
     material: Option<Id<Material>>,
-    light_scale: Option<f32>,
-    light_color: Option<Vec3>,
 }
 
 /// Reads one table and applies it to the nodes that fit `pattern`. `complete` says that all imports were read, so that a
 /// name which fits nothing is the file's mistake.
 pub(super) fn read(pattern: &str, mut keys: Keys<'_>, assets: &mut Assets, complete: bool) {
+    let edit = edit(&mut keys, &assets.scene, complete);
+    let of_lights = lamp::read(&mut keys, assets);
     let scene = &mut assets.scene;
-    let edit = edit(&mut keys, scene, complete);
     let found = fitting(pattern, scene);
     if found.is_empty() && complete {
         unmatched(pattern, &keys, scene);
     }
-    let lit = found.iter().any(|&id| scene.nodes[id].light.is_some());
-    if !lit && !found.is_empty() {
-        for key in ["light_scale", "light_color"].into_iter().filter(|key| keys.has(key)) {
-            keys.complain(key, Complaint::new("no node that fits has a light"));
-        }
+    for &id in &found {
+        edit.apply(&mut scene.nodes[id]);
     }
-    for id in found {
-        edit.apply(id, scene);
+    if !found.is_empty() && !of_lights.is_empty() {
+        relight(&found, &of_lights, &keys, scene);
     }
     keys.finish();
+}
+
+/// Gives nodes changed lights of their own: others may share those that they had.
+fn relight(nodes: &[Id<Node>], edit: &lamp::LightEdit, keys: &Keys<'_>, scene: &mut Scene) {
+    let light = |&id: &Id<Node>| Some((id, scene.lights.get(scene.nodes[id].light?)?.clone()));
+    let (lit, mut lights): (Vec<_>, Vec<_>) = nodes.iter().filter_map(light).unzip();
+    edit.apply(&mut lights, keys);
+    for (id, light) in lit.into_iter().zip(lights) {
+        scene.nodes[id].light = Some(scene.lights.push(light));
+    }
 }
 
 fn edit(keys: &mut Keys<'_>, scene: &Scene, complete: bool) -> Edit {
@@ -54,32 +60,22 @@ fn edit(keys: &mut Keys<'_>, scene: &Scene, complete: bool) -> Edit {
     });
     let rotate = keys.optional("rotate", vector).map_or(DMat3::IDENTITY, placement::rotation);
     let scale = keys.optional("scale", placement::scale).unwrap_or(DVec3::ONE);
-    let color = keys.optional("light_color", numbers::<3>(0.0..));
     Edit {
         visible: keys.optional("visible", flag),
         translate: keys.optional("translate", vector).unwrap_or(DVec3::ZERO),
         turn: rotate * DMat3::from_diagonal(scale),
         material,
-        light_scale: keys.optional("light_scale", number(0.0..)).map(|scale| scale as f32),
-        light_color: color.map(|color| Vec3::from_array(color.map(|channel| channel as f32))),
     }
 }
 
-/// The nodes whose name, or names from a root down joined by `/`, fits.
+/// The nodes whose name or path fits.
 fn fitting(pattern: &str, scene: &Scene) -> Vec<Id<Node>> {
-    let mut paths: Vec<String> = Vec::new();
     let mut found = Vec::new();
-    for placed in scene.placed() {
-        paths.truncate(placed.depth);
-        let path = match paths.last() {
-            Some(above) => format!("{above}/{}", placed.node.name),
-            None => placed.node.name.clone(),
-        };
-        if glob::matches(pattern, &placed.node.name) || glob::matches(pattern, &path) {
+    scene.paths(|placed, path| {
+        if glob::matches(pattern, &placed.node.name) || glob::matches_path(pattern, path) {
             found.push(placed.id);
         }
-        paths.push(path);
-    }
+    });
     found
 }
 
@@ -96,32 +92,10 @@ fn unmatched(pattern: &str, keys: &Keys<'_>, scene: &Scene) {
 }
 
 impl Edit {
-    fn apply(&self, id: Id<Node>, scene: &mut Scene) {
-        let node = &mut scene.nodes[id];
+    fn apply(&self, node: &mut Node) {
         node.visible = self.visible.unwrap_or(node.visible);
         node.material = self.material.or(node.material);
         let DAffine3 { matrix3, translation } = node.transform;
         node.transform = DAffine3 { matrix3: self.turn * matrix3, translation: translation + self.translate };
-        if self.light_scale.is_none() && self.light_color.is_none() {
-            return;
-        }
-        // Other nodes may share the light.
-        let Some(mut light) = node.light.and_then(|light| scene.lights.get(light)).cloned() else { return };
-        light.color = self.light_color.unwrap_or(light.color);
-        *strength(&mut light.kind) *= self.light_scale.unwrap_or(1.0);
-        node.light = Some(scene.lights.push(light));
-    }
-}
-
-/// What a light's colour is multiplied with.
-fn strength(kind: &mut LightKind) -> &mut f32 {
-    match kind {
-        LightKind::Point { intensity } | LightKind::Spot { intensity, .. } => intensity,
-        LightKind::Directional { illuminance, .. } => illuminance,
-        LightKind::Rect { radiance, .. }
-        | LightKind::Disk { radiance, .. }
-        | LightKind::Sphere { radiance, .. }
-        | LightKind::Cylinder { radiance, .. }
-        | LightKind::Environment { radiance, .. } => radiance,
     }
 }

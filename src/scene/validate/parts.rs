@@ -2,6 +2,8 @@
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
+use glam::Affine2;
+
 use super::{Findings, label, placed_label};
 use crate::{
     Camera, Diagnostic, Light, LightKind, Material, Projection, Scene, Texture,
@@ -146,6 +148,13 @@ fn light(scene: &Scene, light: &Light, name: &impl Fn() -> String, findings: &mu
     if let Some(id) = used.filter(|&id| scene.textures.get(id).is_none()) {
         let message = format!("names texture #{}, which does not exist", id.index());
         findings.add("lights name textures that do not exist", name, Diagnostic::error(message));
+    }
+    let image = used.and_then(|id| scene.textures.get(id));
+    let is_placed = |it: &Texture| it.transform.is_finite() && it.transform != Affine2::IDENTITY;
+    if matches!(light.kind, LightKind::Environment { .. }) && image.is_some_and(is_placed) {
+        let message = "its image surrounds everything: the transform of the texture is ignored";
+        let rule = "images of surroundings are placed like textures";
+        findings.add(rule, name, Diagnostic::warning(message).hint("turn the light"));
     }
 }
 

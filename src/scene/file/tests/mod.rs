@@ -6,6 +6,8 @@ mod layers;
 mod meaning;
 mod nodes;
 mod reference;
+mod shown;
+mod textures;
 
 use std::{fs, path::Path};
 

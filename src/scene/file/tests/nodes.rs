@@ -89,3 +89,61 @@ fn a_copied_camera_begins_as_the_other() {
         assert_eq!(camera(flat).projection, Projection::Orthographic { half_height: 2.0 });
     }
 }
+
+#[test]
+fn paths_may_begin_where_the_asset_does() {
+    for pattern in ["/part", "/a/part", "/a/*"] {
+        assert!(
+            !node(&with(&format!("[node.\"{pattern}\"]\nvisible = false\n")), "part").visible,
+            "{pattern}"
+        );
+    }
+    assert!(node(&with("[node.\"/art*\"]\nvisible = false\n"), "part").visible);
+}
+
+#[test]
+fn lights_of_nodes_get_other_shapes() {
+    let folder = super::folder(
+        &format!(
+            "{IMPORT}[node.part]\nlight_width = 2\nlight_height = 0.5\n\
+             light_texture = {{ file = \"gobo.png\", uv_scale = 2 }}\n"
+        ),
+        &["a.glb", "gobo.png"],
+    );
+    let scene = super::read(folder.path()).unwrap().scene;
+    let light = &scene.lights[node(&scene, "part").light.unwrap()];
+    let LightKind::Rect { radiance: 1.0, width: 2.0, height: 0.5, texture: Some(gobo) } = light.kind else {
+        panic!("{light:?}")
+    };
+    assert_eq!(scene.textures[gobo].transform.matrix2.x_axis.x, 2.0);
+}
+
+/// Each key changes the lights that can have it, and is an error where none can.
+#[test]
+fn keys_of_lights_go_with_their_types() {
+    let lights = "[[light]]\nname = \"spot\"\ntype = \"spot\"\n[[light]]\nname = \"sun\"\ntype = \"directional\"\n\
+                  [[light]]\nname = \"tube\"\ntype = \"cylinder\"\n[[light]]\nname = \"ball\"\ntype = \"sphere\"\n\
+                  [[light]]\nname = \"disk\"\ntype = \"disk\"\n[[light]]\nname = \"bulb\"\ntype = \"point\"\n";
+    let all = "light_inner = 5\nlight_outer = 10\nlight_angle = 2\nlight_radius = 3\nlight_length = 4\n";
+    let scene = right(&format!("{lights}[node.\"*\"]\n{all}"), &[]).scene;
+    let kind = |name: &str| scene.lights[node(&scene, name).light.unwrap()].kind.clone();
+    let radians = |degrees: f64| degrees.to_radians() as f32;
+    let (inner, outer) = (radians(5.0), radians(10.0));
+    assert_eq!(kind("spot"), LightKind::Spot { intensity: 1.0, inner, outer });
+    assert_eq!(kind("sun"), LightKind::Directional { illuminance: 1.0, angle: radians(2.0) });
+    assert_eq!(kind("tube"), LightKind::Cylinder { radiance: 1.0, radius: 3.0, length: 4.0 });
+    assert_eq!(kind("ball"), LightKind::Sphere { radiance: 1.0, radius: 3.0 });
+    assert_eq!(kind("disk"), LightKind::Disk { radiance: 1.0, radius: 3.0 });
+    assert_eq!(kind("bulb"), LightKind::Point { intensity: 1.0 });
+
+    for (key, says) in [
+        ("light_radius = 2", "with it: disk, sphere and cylinder lights have"),
+        ("light_angle = 181", "must be at least 0 and at most 180"),
+        ("light_width = 0", "must be greater than 0"),
+        ("light_texture = \"none.png\"", "cannot be read"),
+        ("light_outer = 15", "the inner angle must not exceed the outer, as it would for light \"spot\""),
+    ] {
+        let errors = wrong(&format!("{lights}[node.spot]\n{key}\n"), &[]);
+        assert!(errors.len() == 1 && errors[0].contains(says), "{key}\n{errors:#?}");
+    }
+}

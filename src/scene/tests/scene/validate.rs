@@ -182,6 +182,16 @@ fn parts() {
             "error: node \"World\"/light \"sky\": names texture #3, which does not exist",
         ),
         (
+            |s| {
+                let image = s.images.ids().next().unwrap();
+                let turned = Texture { transform: glam::Affine2::from_angle(1.0), ..Texture::new(image) };
+                let texture = Some(s.textures.push(turned));
+                s.lights[LIGHT].kind = LightKind::Environment { radiance: 1.0, texture };
+            },
+            "warning: node \"World\"/light \"sky\": its image surrounds everything: the transform of the \
+             texture is ignored\n  hint: turn the light",
+        ),
+        (
             |s| s.lights[LIGHT].kind = LightKind::Spot { intensity: 1.0, inner: 1.0, outer: 0.5 },
             "error: node \"World\"/light \"sky\": inner must lie between 0 and outer, is 1",
         ),
