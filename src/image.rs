@@ -197,7 +197,10 @@ pub fn write(run: &Run<'_>, to: &Destination) -> Result<Vec<Diagnostic>, OutputE
     }
     notes.extend(run.report.warnings.iter().map(|w| Diagnostic::warning(w.as_str())));
     if run.is_black() {
-        notes.push(Diagnostic::warning("the image is black: no light reaches the camera"));
+        let tried = run.report.number("samples_in_vain").filter(|tried| *tried > 0.0);
+        let search =
+            tried.map_or(String::new(), |tried| format!("; {tried} samples looked for some in vain"));
+        notes.push(Diagnostic::warning(format!("the image is black: no light reaches the camera{search}")));
     }
     Ok(notes)
 }

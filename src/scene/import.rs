@@ -143,7 +143,7 @@ impl ImportRequest {
             return Err(refuse("is not a file"));
         }
         if reference.contains("://") {
-            return Err(refuse("is on the network; only files beside the scene are read"));
+            return Err(refuse("is a URL; only files beside the scene are read"));
         }
         let file = self.folder().join(reference.replace('\\', "/"));
         let found = file.canonicalize().map_err(|e| refuse(&format!("cannot be read: {e}")));

@@ -73,7 +73,7 @@ fn mistakes_in_a_scene_file_have_line_column_and_advice() {
             "spp = 4",
             "mutations = { bidirectional = 0, lens = 0, caustic = 0, multi-chain = 0, window = 0, technique = 0, \
              eye-chain = 0, light-chain = 0, lens-subpath = 0, manifold = 0 }",
-            ["scene.toml:23:13: error: render.mutations: ", "switched off"],
+            ["scene.toml:23:31: error: render.mutations: ", "switched off"],
         ),
         ("spp = 4", "chain_length = 0", ["scene.toml:23:16: error: render.chain_length: ", "1"]),
         ("spp = 4", "mutation_choice = \"best\"", ["scene.toml:23:", "learned"]),

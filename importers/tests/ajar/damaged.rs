@@ -39,7 +39,7 @@ fn wrong_json_is_named_with_its_place() {
         (with("images", json!([{ "name": "a" }])), "images[0]", "either \"file\" or \"bytes\""),
         (with("images", json!([{ "file": "../../etc/passwd" }])), "images[0]", "outside the scene's folder"),
         (with("images", json!([{ "file": "/etc/passwd" }])), "images[0]", "outside the scene's folder"),
-        (with("images", json!([{ "file": "http://localhost/a.png" }])), "images[0]", "on the network"),
+        (with("images", json!([{ "file": "http://localhost/a.png" }])), "images[0]", "is a URL"),
         (
             with("images", json!([{ "bytes": { "offset": 0, "count": 1 } }])),
             "images[0]",

@@ -123,7 +123,7 @@ fn missing_and_short_buffers_are_errors_if_they_are_used() {
         (json!({"byteLength": 36, "uri": "no.bin"}), "buffers[0].uri", "\"no.bin\" cannot be read"),
         (json!({"byteLength": 36}), "buffers[0]", "neither URI nor binary chunk"),
         (json!({"byteLength": 36, "uri": "../up.bin"}), "buffers[0].uri", "\"../up.bin\" "),
-        (json!({"byteLength": 36, "uri": "http://a/b.bin"}), "buffers[0].uri", "on the network"),
+        (json!({"byteLength": 36, "uri": "http://a/b.bin"}), "buffers[0].uri", "is a URL"),
         (json!({"byteLength": 36, "uri": "data:,abc"}), "buffers[0].uri", "is not base64"),
         (json!({"byteLength": 36, "uri": data_uri(&asset.data[..35])}), "buffers[0]", "35 of 36 bytes"),
         (

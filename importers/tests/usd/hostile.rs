@@ -32,7 +32,7 @@ fn nothing_outside_the_folder_is_opened() {
     for (prims, place, message) in [
         (format!("def \"A\" (references = @{absolute}@</S>) {{}}"), Some("/A"), wanted),
         ("def \"A\" (payload = @../../secret.usda@) {}".into(), Some("/A"), wanted),
-        ("def \"A\" (references = @http://a.example/b.usd@) {}".into(), Some("/A"), "is on the network"),
+        ("def \"A\" (references = @http://a.example/b.usd@) {}".into(), Some("/A"), "is a URL"),
         (
             format!(
                 "def \"A\" (variants = {{ string v = \"x\" }}\nprepend variantSets = \"v\") {{\nvariantSet \"v\" = {{ \"x\" {{}} \"y\" (references = @{absolute}@) {{}} }} }}"

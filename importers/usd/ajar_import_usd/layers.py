@@ -32,7 +32,7 @@ class Jail:
         """`path` if it may be read; of a path into a package, the package counts."""
         outer = Ar.SplitPackageRelativePathOuter(path)[0] if Ar.IsPackageRelativePath(path) else path
         if len(urlparse(outer).scheme) > 1:
-            raise StageError(f"{path!r} is on the network; only files beside the scene are read", place)
+            raise StageError(f"{path!r} is a URL; only files beside the scene are read", place)
         try:
             real = Path(outer).resolve()
         except (OSError, RuntimeError, ValueError) as error:

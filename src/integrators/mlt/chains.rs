@@ -164,6 +164,7 @@ impl Totals {
             ("seed_candidates", self.pool.size as f64),
             ("heaviest_thousandth_of_candidates", self.pool.heavy_share()),
             ("empty_rounds", self.empty_rounds as f64),
+            ("samples_in_vain", self.samples_in_vain as f64),
         ] {
             report.numbers.push((name.into(), number));
         }

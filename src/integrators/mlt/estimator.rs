@@ -76,12 +76,10 @@ impl Rounds for PathsAlone<'_> {
 
     fn report(&self) -> Report {
         let mut report = self.paths.report();
-        report.lines.push(match self.dark_after {
-            Some(samples) => {
-                format!("{samples} bidirectional samples found no light on any surface that is seen")
-            }
-            None => "path tracing alone: chains would not pay here".into(),
-        });
+        match self.dark_after {
+            Some(samples) => report.numbers.push(("samples_in_vain".into(), samples.into())),
+            None => report.lines.push("path tracing alone: chains would not pay here".into()),
+        }
         report
     }
 }

@@ -52,7 +52,7 @@ fn other_choices_of_mutations_show_the_same() {
     let world = (scene.world)();
     let bdpt = render_blocks(&world, &Bdpt, &settings(&world, 3, scene.depth, 12), 24);
     for (name, metropolis) in ways {
-        let settings = Settings { metropolis, ..settings(&world, 6, scene.depth, 32) };
+        let settings = Settings { metropolis, ..settings(&world, 6, scene.depth, 16) };
         let mlt = render_blocks(&world, &Mlt, &settings, 24);
         assert_blocks_agree(name, &bdpt, &mlt);
     }

@@ -42,7 +42,7 @@ fn proposals_can_be_read_backwards() {
     let mut made = vec![0; list.len()];
     for scene in SCENES.iter().chain([&IMAGES]) {
         let world = (scene.world)();
-        let (space, paths) = seeds(&world, scene.depth, sized(2000));
+        let (space, paths) = seeds(&world, scene.depth, sized(4000));
         let (mut y, mut rng) = (Proposal::default(), Rng::new(3, Purpose::Test, 0, 0));
         for (mutation, made) in list.iter().zip(&mut made) {
             let mut proposals = 0;

@@ -146,7 +146,7 @@ fn messages() {
         (
             "[[import]]\nfile = \"https://example.org/a.glb\"\n",
             &[
-                "2:8: error: import[0].file: \"https://example.org/a.glb\" is on the network; only files beside the scene are read",
+                "2:8: error: import[0].file: \"https://example.org/a.glb\" is a URL; only files beside the scene are read",
             ],
         ),
         (
