@@ -195,9 +195,16 @@ def test_all_that_is_said_has_room(bench: Bench, width: int) -> None:
 
 
 def test_the_pixel_under_the_pointer_is_told(bench: Bench) -> None:
-    bench.page.mouse.move(*bench.at(0.5, 0.5))
-    bench.page.wait_for_function("() => document.getElementById('probe').innerText.includes('material clay')")
-    text = bench.page.inner_text("#probe")
+    # One round knows no error of its pixels: asked again until there are more.
+    for _ in range(40):
+        bench.page.mouse.move(*bench.at(0.5, 0.52))
+        bench.page.mouse.move(*bench.at(0.5, 0.5))
+        told = "() => /^.(159|160), (99|100).*clay/s.test(document.getElementById('probe').innerText)"
+        bench.page.wait_for_function(told)
+        text = bench.page.inner_text("#probe")
+        if "±" in text:
+            break
+        bench.page.wait_for_timeout(250)
     # The middle of an odd number of screen pixels is on either side.
     assert re.match(r"\((159|160), (99|100)\)", text)
     assert "±" in text
