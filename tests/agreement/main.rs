@@ -102,7 +102,7 @@ fn window_room() {
 
 #[test]
 fn reading_corner() {
-    check("reading-corner", 32, 8);
+    check("reading-corner", 48, 12);
 }
 
 #[test]

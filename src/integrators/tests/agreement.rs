@@ -10,31 +10,26 @@ use ajar_integrators::{
     path::PathTracer,
 };
 use common::{
-    compare::{assert_blocks_agree, assert_same},
-    render, render_blocks,
+    compare::assert_blocks_agree,
+    render_blocks,
     scenes::{IMAGES, POINT_LIGHT_AND_GLASS, SCENES},
     settings,
 };
 
 #[test]
-fn path_tracing_and_bidirectional_path_tracing() {
-    for scene in SCENES {
-        let world = (scene.world)();
-        let path = render(&world, &PathTracer, &settings(&world, 1, scene.depth, 32), 24);
-        let bdpt = render(&world, &Bdpt, &settings(&world, 2, scene.depth, 8), 24);
-        assert_same(scene.name, &path, &bdpt, world.camera.width as usize);
-    }
-}
-
-#[test]
-fn bidirectional_path_tracing_and_metropolis_light_transport() {
+fn all_integrators_show_what_bidirectional_path_tracing_shows() {
     for scene in SCENES.iter().chain([&IMAGES, &POINT_LIGHT_AND_GLASS]) {
         let world = (scene.world)();
-        let bdpt = render_blocks(&world, &Bdpt, &settings(&world, 3, scene.depth, 12), 24);
-        let mlt = render_blocks(&world, &Mlt, &settings(&world, 4, scene.depth, 48), 32);
+        let settings = |seed, samples| settings(&world, seed, scene.depth, samples);
+        let bdpt = render_blocks(&world, &Bdpt, &settings(3, 12), 24);
+        // Path tracing does not find what a light without extent sends through glass.
+        if scene.name != POINT_LIGHT_AND_GLASS.name {
+            let path = render_blocks(&world, &PathTracer, &settings(1, 32), 24);
+            assert_blocks_agree(&format!("{}, path", scene.name), &bdpt, &path);
+        }
+        let mlt = render_blocks(&world, &Mlt, &settings(4, 48), 32);
         assert_blocks_agree(&format!("{}, mlt", scene.name), &bdpt, &mlt);
-        let ajar = Ajar { always: true };
-        let ajar = render_blocks(&world, &ajar, &settings(&world, 5, scene.depth, 8), 24);
+        let ajar = render_blocks(&world, &Ajar { always: true }, &settings(5, 8), 24);
         assert_blocks_agree(&format!("{}, ajar", scene.name), &bdpt, &ajar);
     }
 }
