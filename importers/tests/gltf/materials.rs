@@ -224,7 +224,7 @@ fn images_that_cannot_be_had_drop_their_textures_once() {
         (json!({"uri": "../x.png"}), "images[0]: textures of this image are dropped: \"../x.png\" "),
         (
             json!({"uri": "https://a.b/x.png"}),
-            "images[0]: textures of this image are dropped: \"https://a.b/x.png\" is on",
+            "images[0]: textures of this image are dropped: \"https://a.b/x.png\" is a URL",
         ),
         (
             json!({"uri": data_uri(b"GIF89a")}),
