@@ -94,14 +94,8 @@ fn decode(path: &Path, read: Read, budget: &Budget) -> Result<Numbers, String> {
 impl Read {
     fn number(self, texel: Vec4) -> f32 {
         let color = texel.truncate().to_array();
-        let [r, g, b] = if self.srgb { color.map(srgb::linear) } else { color };
-        let number = match self.channel {
-            Channel::R => r,
-            Channel::G => g,
-            Channel::B => b,
-            Channel::A => texel.w,
-            Channel::L => 0.2126 * r + 0.7152 * g + 0.0722 * b,
-        };
+        let color = if self.srgb { color.map(srgb::linear) } else { color };
+        let number = self.channel.of(Vec3::from(color).extend(texel.w));
         if number.is_finite() { number } else { 0.0 }
     }
 }

@@ -10,9 +10,6 @@ use crate::{
     texture::Textures,
 };
 
-/// Weights of red, green and blue in a luminance (ITU-R BT.709).
-const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
-
 /// Where on a surface a material is asked for.
 pub trait Place {
     /// Texture coordinates of a set; the origin where the mesh has no such set.
@@ -228,14 +225,7 @@ fn fetch(input: TextureInput, textures: &Textures, place: &impl Place) -> Vec4 {
 fn number(input: &Input<f32>, textures: &Textures, place: &impl Place) -> f64 {
     let Some(texture) = input.texture else { return input.value.into() };
     let texel = fetch(texture, textures, place);
-    let channel = match texture.channel {
-        Channel::R => texel.x,
-        Channel::G => texel.y,
-        Channel::B => texel.z,
-        Channel::A => texel.w,
-        Channel::L => texel.truncate().dot(LUMINANCE),
-    };
-    f64::from(input.value) * f64::from(channel)
+    f64::from(input.value) * f64::from(texture.channel.of(texel))
 }
 
 fn color(input: &Input<Vec3>, textures: &Textures, place: &impl Place) -> Rgb {

@@ -1,6 +1,6 @@
 //! Materials: one principled model that every format maps to.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use crate::{Id, Texture};
@@ -20,6 +20,23 @@ pub enum Channel {
     A,
     /// Luminance of red, green and blue.
     L,
+}
+
+/// Weights of red, green and blue in a luminance (ITU-R BT.709).
+const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
+
+impl Channel {
+    /// Its number of a texel: red, green, blue and alpha, linear.
+    #[inline]
+    pub fn of(self, texel: Vec4) -> f32 {
+        match self {
+            Self::R => texel.x,
+            Self::G => texel.y,
+            Self::B => texel.z,
+            Self::A => texel.w,
+            Self::L => texel.truncate().dot(LUMINANCE),
+        }
+    }
 }
 
 /// A texture as one input sees it.
