@@ -22,7 +22,10 @@ const FEATURES: &[Feature] = &[
     },
     Feature { name: "metersPerUnit, upAxis", support: "those of the root layer" },
     Feature { name: "time", support: "transforms, shapes, lights and cameras at one time" },
-    Feature { name: "visibility, purpose", support: "yes; purposes default and render" },
+    Feature {
+        name: "visibility, purpose",
+        support: "yes; purposes default and render, or those of RenderSettings",
+    },
     Feature {
         name: "Mesh",
         support: "primvars of all interpolations, normals, GeomSubsets, left-handed orientation",

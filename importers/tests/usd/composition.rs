@@ -184,6 +184,33 @@ def RenderProduct "Product" { rel camera = </Main> }
 }
 
 #[test]
+fn settings_say_which_purposes_are_drawn() {
+    if !can_run() {
+        return;
+    }
+    let squares = r#"
+def "Plain" (references = @parts/square.usda@) {}
+def "Fine" (references = @parts/square.usda@) { uniform token purpose = "render" }
+def "Coarse" (references = @parts/square.usda@) { uniform token purpose = "proxy" }
+"#;
+    let drawn = |settings: &str| {
+        let imported = Stage::new(&format!("{squares}{settings}")).with("parts/square.usda", SQUARE).scene();
+        assert_eq!(warnings(&imported), Vec::<String>::new());
+        let nodes = imported.scene.nodes.iter();
+        let names =
+            nodes.map(|node| node.name.clone()).filter(|name| "PlainFineCoarse".contains(name.as_str()));
+        names.collect::<Vec<_>>()
+    };
+    assert_eq!(drawn(""), ["Plain", "Fine"]);
+    assert_eq!(
+        drawn("def RenderSettings \"S\" { uniform token[] includedPurposes = [\"default\"] }"),
+        ["Plain"]
+    );
+    let both = "def RenderSettings \"S\" { uniform token[] includedPurposes = [\"default\", \"proxy\"] }";
+    assert_eq!(drawn(both), ["Plain", "Coarse"]);
+}
+
+#[test]
 fn settings_that_are_ignored_are_named() {
     if !can_run() {
         return;
@@ -196,8 +223,8 @@ def RenderSettings "Settings" { rel products = </Product>
     rel camera = </Main>
     uniform bool disableDepthOfField = true
     uniform token aspectRatioConformPolicy = "cropAperture"
-    uniform token[] includedPurposes = ["default", "proxy"]
-    uniform token[] materialBindingPurposes = ["full", ""] }
+    float pixelAspectRatio = 2
+    uniform token[] materialBindingPurposes = ["full", "allPurpose"] }
 def RenderProduct "Product" { token productName = "a.exr"
     uniform token productType = "deepRaster"
     rel orderedVars = </Beauty> }
@@ -208,7 +235,7 @@ def RenderVar "Beauty" {}
     for expected in [
         "/Main: the shutter is ignored",
         "/Settings: aspectRatioConformPolicy is ignored: it is cropAperture",
-        "/Settings: includedPurposes is ignored: it is default, proxy",
+        "/Settings: pixelAspectRatio is ignored: it is 2",
         "/Product: productType is ignored: it is deepRaster",
         "/Product: productName is ignored",
         "/Product: orderedVars is ignored",

@@ -14,7 +14,6 @@ LARGEST = 65535
 KEPT = {
     "aspectRatioConformPolicy": "expandAperture",
     "dataWindowNDC": Gf.Vec4f(0, 0, 1, 1),
-    "includedPurposes": Vt.TokenArray(["default", "render"]),
     "materialBindingPurposes": Vt.TokenArray(["full", ""]),
     "pixelAspectRatio": 1.0,
     "productType": "raster",
@@ -22,27 +21,41 @@ KEPT = {
 }
 """What is done whatever the settings say."""
 
+USUAL_PURPOSES = ("default", "render")
+"""What is drawn where no settings say it."""
 
-def settings(walk: Walk) -> None:
-    """Camera and size of the settings that the stage names, or its only ones; the first product goes before them."""
+
+def chosen(walk: Walk) -> list[Usd.Prim]:
+    """The settings that the stage names, or its only ones, and their first product, which goes before them."""
     chosen = UsdRender.Settings.GetStageRenderSettings(walk.stage)
     if not chosen:
         every = [prim for prim in walk.stage.Traverse() if prim.IsA(UsdRender.Settings)]
         if len(every) != 1:
             if every:
                 walk.report.note(None, f"{len(every)} RenderSettings, none of them named by the stage; ignored")
-            return
+            return []
         chosen = UsdRender.Settings(every[0])
     products = [walk.stage.GetPrimAtPath(path) for path in chosen.GetProductsRel().GetForwardedTargets()]
     products = [prim for prim in products if prim]
     if len(products) > 1:
         walk.report.note(chosen.GetPath(), f"the first of {len(products)} render products is used")
-    for prim in [chosen.GetPrim(), *products[:1]]:
-        take(walk, prim)
+    return [chosen.GetPrim(), *products[:1]]
+
+
+def purposes(walk: Walk, prims: list[Usd.Prim]) -> tuple[str, ...]:
+    """Purposes of geometry that the settings among `prims` want to be drawn."""
+    for prim in prims:
+        attribute = prim.GetAttribute("includedPurposes")
+        if attribute and attribute.HasAuthoredValue():
+            included = tuple(attribute.Get(walk.time))
+            if included != USUAL_PURPOSES:
+                walk.report.note(prim.GetPath(), f"only what has one of these purposes is drawn: {said(included)}")
+            return included
+    return USUAL_PURPOSES
 
 
 def take(walk: Walk, prim: Usd.Prim) -> None:
-    """What settings or a product say themselves."""
+    """Camera, size and lens that settings or a product say themselves."""
     base = UsdRender.SettingsBase(prim)
     size = base.GetResolutionAttr()
     if size and size.HasAuthoredValue():
@@ -69,6 +82,9 @@ def name_what_is_ignored(walk: Walk, prim: Usd.Prim) -> None:
         attribute = prim.GetAttribute(name)
         if attribute and attribute.HasAuthoredValue():
             value = attribute.Get(walk.time)
+            if name == "materialBindingPurposes" and value is not None:
+                # Houdini writes the name of the token for what the schema calls "".
+                value = Vt.TokenArray(["" if token == "allPurpose" else token for token in value])
             if value not in (kept, None, ""):
                 walk.report.warn(prim.GetPath(), f"{name} is ignored: it is {said(value)}, and taken as {said(kept)}")
     if prim.GetAttribute("productName").Get(walk.time):
@@ -79,6 +95,6 @@ def name_what_is_ignored(walk: Walk, prim: Usd.Prim) -> None:
 
 def said(value: object) -> str:
     """A value in words."""
-    if isinstance(value, Vt.TokenArray):
+    if isinstance(value, (Vt.TokenArray, tuple)):
         return ", ".join(token or "all" for token in value) or "none"
     return str(value)

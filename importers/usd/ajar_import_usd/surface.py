@@ -143,7 +143,8 @@ class Surface:
         """A normal map from an input of decoded normals, −1 to 1."""
         term = self.term(name, UP)
         if is_constant(term):
-            if tuple(numbers(term)) != UP:
+            # Houdini writes zeros where no normal is meant.
+            if tuple(numbers(term)) not in (UP, (0.0, 0.0, 0.0)):
                 self.warn(f"{name!r} is ignored: it is no image")
             return
         sources = {c.source for c in term[:3]}

@@ -51,6 +51,8 @@ class Walk:
         # Names of cameras by path.
         self.cameras: dict[Sdf.Path, str] = {}
         self.seen = 0
+        self.settings = settings.chosen(self)
+        self.purposes = settings.purposes(self, self.settings)
 
     def run(self) -> None:
         """Fills the document."""
@@ -58,7 +60,8 @@ class Walk:
         children = [self.node(child, 0) for child in self.children(self.stage.GetPseudoRoot())]
         root.children = [child for child in [*children, *self.top] if child]
         self.document.place(root)
-        settings.settings(self)
+        for prim in self.settings:
+            settings.take(self, prim)
 
     def children(self, prim: Usd.Prim) -> Any:
         """Prims below that are active, loaded, defined and no classes, those of instances too."""
@@ -98,9 +101,9 @@ class Walk:
         return bool(imageable and imageable.GetVisibilityAttr().Get(self.time) == UsdGeom.Tokens.invisible)
 
     def is_drawn(self, prim: Usd.Prim) -> bool:
-        """Whether the prim itself is for pictures: of purpose default or render."""
+        """Whether the prim itself has a purpose that is drawn."""
         purpose = UsdGeom.Imageable(prim).ComputePurpose() if prim.IsA(UsdGeom.Imageable) else "default"
-        return purpose in (UsdGeom.Tokens.default_, UsdGeom.Tokens.render)
+        return purpose in self.purposes
 
     def set_transform(self, prim: Usd.Prim, node: Node) -> bool:
         """Gives the node the prim's transform; whether it does not follow its parent."""
