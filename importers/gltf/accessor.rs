@@ -250,3 +250,13 @@ pub(super) fn check_unused(asset: &Asset, context: &mut Context) {
         }
     }
 }
+
+/// Where the first value is that is wrong, if any, on all cores.
+pub(super) fn first<T: Sync>(values: &[T], is_wrong: impl Fn(&T) -> bool + Sync) -> Option<usize> {
+    // Looked at by the chunk, without an exit in it, so that many values are looked at with one instruction.
+    const CHUNK: usize = 4096;
+    let has_wrong = |chunk: &[T]| chunk.iter().fold(false, |found, value| found | is_wrong(value));
+    let chunk = values.par_chunks(CHUNK).position_first(has_wrong)?;
+    let start = chunk * CHUNK;
+    values.get(start..)?.iter().position(is_wrong).map(|at| start + at)
+}

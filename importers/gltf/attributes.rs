@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::{
     Asset, Context,
-    accessor::Accessor,
+    accessor::{Accessor, first},
     deform::{self, Shape},
 };
 
@@ -55,7 +55,7 @@ impl Vertices<'_> {
                 *position = place.transform_point3(position.as_dvec3()).as_vec3();
             }
         }
-        if let Some(at) = positions.par_iter().position_first(|position| !position.is_finite()) {
+        if let Some(at) = first(&positions, |position| !position.is_finite()) {
             let vertex = self.used.get(at).copied().unwrap_or_default();
             return Err(Diagnostic::error("the position is not finite").element(format!("{name}[{vertex}]")));
         }

@@ -7,11 +7,16 @@ use gltf::json::{
     mesh::{Mode, Primitive, Semantic},
     validation::Checked,
 };
-use rayon::prelude::*;
 
 use super::{
-    Asset, Context, accessor::Accessor, at, attributes::Vertices, deform::Shape, material::Materials,
-    topology, variants::Variants,
+    Asset, Context,
+    accessor::{Accessor, first},
+    at,
+    attributes::Vertices,
+    deform::Shape,
+    material::Materials,
+    topology,
+    variants::Variants,
 };
 
 /// Bytes that one corner costs while its triangle is made: the corner, the triangle, and the renumbering.
@@ -149,7 +154,7 @@ fn corners(
     }
     context.charge(u64::from(indices.count) * CORNER, &element)?;
     let corners = indices.indices();
-    match corners.par_iter().position_first(|&corner| corner >= count) {
+    match first(&corners, |&corner| corner >= count) {
         Some(at) => {
             let corner = corners.get(at).copied().unwrap_or_default();
             let message = format!("points to vertex {corner}, but there are only {count}");

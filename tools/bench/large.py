@@ -67,10 +67,11 @@ def write_glb(path, positions, normals, triangles):
             file.write(array.tobytes())
 
 
-def held(pid):
-    """Bytes of memory that a process holds; 0 where it has ended."""
+def memory(pid):
+    """Bytes that a process holds and the most that it held; none where it has ended."""
     status = Path(f"/proc/{pid}/status").read_text().splitlines()
-    return sum(int(line.split()[1]) * 1024 for line in status if line.startswith("VmRSS:"))
+    lines = {line.split()[0]: int(line.split()[1]) * 1024 for line in status if line.startswith(("VmRSS:", "VmHWM:"))}
+    return (lines["VmRSS:"], lines["VmHWM:"]) if lines else None
 
 
 def measure(command):
@@ -78,13 +79,16 @@ def measure(command):
     start, samples, ended = time.perf_counter(), [], 0
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     while not ended:
-        samples.append(held(process.pid))
+        samples.append(memory(process.pid))
         time.sleep(0.002)
         ended, status, usage = os.wait4(process.pid, os.WNOHANG)
     seconds = time.perf_counter() - start
     if status != 0:
         raise SystemExit(f"{' '.join(command)} failed with status {status}")
-    return seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, np.median(samples[len(samples) * 3 // 4 :])
+    samples = [sample for sample in samples if sample]
+    late = np.median([now for now, _ in samples[len(samples) * 3 // 4 :]])
+    # Not `ru_maxrss`: it begins with what this program held when it started the other.
+    return seconds, usage.ru_utime + usage.ru_stime, max(most for _, most in samples), late
 
 
 def main():
