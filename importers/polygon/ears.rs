@@ -6,9 +6,16 @@
 use glam::{DVec2, DVec3, Vec2Swizzles, Vec3};
 
 /// Twice the vector area (M. Newell): the normal of a polygon that need not be planar, in f64.
+#[inline]
 pub(crate) fn vector_area(points: &[Vec3]) -> DVec3 {
     let origin = points.first().copied().unwrap_or_default().as_dvec3();
     points.windows(2).map(|edge| (edge[0].as_dvec3() - origin).cross(edge[1].as_dvec3() - origin)).sum()
+}
+
+/// Whether a polygon with this vector area has any that can be used.
+pub(crate) fn has_area(area: DVec3) -> bool {
+    let square = area.length_squared();
+    square > 0.0 && square.is_finite()
 }
 
 /// Splits a polygon with a normal of any length into triangles of indices into `points`, wound like the polygon; triangles

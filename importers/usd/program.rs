@@ -14,6 +14,7 @@ pub(super) const PROGRAM: Program = Program {
     files: package_files![
         "ajar_import_usd":
         "__init__.py",
+        "blocks.py",
         "camera.py",
         "curves.py",
         "document.py",

@@ -127,6 +127,7 @@ impl Sink {
     fn material(&mut self, material: &Material) {
         let Material {
             name,
+            path,
             base_color,
             diffuse_roughness,
             metallic,
@@ -162,6 +163,7 @@ impl Sink {
             unlit,
         } = material;
         self.text(name);
+        self.text(path);
         [base_color, specular_color, emission, diffuse_transmission_color, sheen_color]
             .into_iter()
             .for_each(|input| self.color(input));

@@ -97,6 +97,8 @@ fn one() -> f32 {
 pub struct Material {
     /// Name from the asset; not necessarily unique.
     pub name: String,
+    /// Where it is in its own file, as `/World/Looks/Chrome`; empty where files have no such places.
+    pub path: String,
     /// Diffuse albedo, metal reflectance at normal incidence, tint of transmission.
     pub base_color: Input<Vec3>,
     /// Oren–Nayar roughness σ of the diffuse part, 0 (Lambert) to 1.
@@ -171,6 +173,7 @@ impl Default for Material {
     fn default() -> Self {
         Self {
             name: String::new(),
+            path: String::new(),
             base_color: Input::constant(Vec3::splat(0.8)),
             diffuse_roughness: Input::constant(0.0),
             metallic: Input::constant(0.0),

@@ -51,6 +51,7 @@ impl Material {
             normal_map,
             coat_normal_map,
             name: _,
+            path: _,
             anisotropy_direction: _,
             thin_walled: _,
             double_sided: _,

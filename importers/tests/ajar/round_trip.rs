@@ -37,6 +37,7 @@ fn full() -> Scene {
     // Every field is written out, so that a new one is not forgotten here.
     let material = scene.materials.push(Material {
         name: "red \"one\"".into(),
+        path: "/World/Looks/All".into(),
         base_color: color(0.1),
         diffuse_roughness: number(0.11),
         metallic: number(0.12),

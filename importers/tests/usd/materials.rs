@@ -78,6 +78,7 @@ fn preview_surface_with_textures() {
     let imported = stage("", &shaders).scene();
     assert_eq!(warnings(&imported), Vec::<String>::new());
     let m = material(&imported);
+    assert_eq!((m.name.as_str(), m.path.as_str()), ("M", "/M"));
     assert_eq!((m.ior, m.coat.value, m.metallic.value), (1.3, 0.25, 1.0));
     assert_eq!(m.alpha_mode, AlphaMode::Mask(0.4));
     let texture = |id| &imported.scene.textures[id];

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import json
 import os
 import sys
@@ -72,6 +73,8 @@ def main() -> None:
         print(json.dumps({"protocol": 1, "extensions": EXTENSIONS, "heads": [head.hex() for head in HEADS]}))
         return
     report = Report()
+    # What is in circles goes with the program; to look for it while usd-core is loaded and arrays are made takes time.
+    gc.disable()
     # Folders of the environment would be searched for layers that are not beside the scene.
     os.environ.pop("PXR_AR_DEFAULT_SEARCH_PATH", None)
     # Bindings of prims that do not apply the schema act all the same: no warning for each.

@@ -80,7 +80,7 @@ class Materials:
             material = UsdShade.Material(self.stage.GetPrimAtPath(path))
             surface = Surface(self, path)
             self.fill(material, surface)
-            surface.item["name"] = Sdf.Path(path).name
+            surface.item |= {"name": Sdf.Path(path).name, "path": path}
             self.known[path] = self.document.add("materials", surface.item), surface
         return self.known[path]
 

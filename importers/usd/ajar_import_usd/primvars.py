@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pxr import Usd, UsdGeom
 
+from .blocks import are_finite
+
 if TYPE_CHECKING:
     from .walk import Walk
 
@@ -86,7 +88,7 @@ def fitted(
     except (TypeError, ValueError):
         dropped(f"its values are not {width} numbers each")
         return None
-    if not np.all(np.isfinite(values)):
+    if not are_finite(values):
         dropped("some of its values are not finite")
         return None
     per = PER.get(interpolation)
@@ -111,7 +113,8 @@ def texture_coordinates(walk: Walk, prim: Usd.Prim, name: str, sizes: Sizes) -> 
         return None
     found = read(walk, prim, primvar, 2, sizes)
     if found:
-        found.values = np.stack([found.values[:, 0], 1 - found.values[:, 1]], axis=1)
+        found.values = found.values.copy()
+        np.subtract(1, found.values[:, 1], out=found.values[:, 1])
     return found
 
 

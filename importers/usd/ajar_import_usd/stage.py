@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdSkel
+from pxr import Gf, Sdf, Tf, Usd, UsdGeom
 
 from .document import Matrix
 from .report import Report, StageError, commentary
@@ -149,9 +149,12 @@ def z_up(stage: Usd.Stage, report: Report) -> bool:
 def bake_skins(stage: Usd.Stage, time: Usd.TimeCode) -> None:
     """Writes the points of skinned meshes at `time` into the session layer."""
     everything = Usd.PrimRange.Stage(stage, Usd.TraverseInstanceProxies())
-    roots = [prim.GetPath() for prim in everything if prim.IsA(UsdSkel.Root)]
+    roots = [prim.GetPath() for prim in everything if prim.IsA("SkelRoot")]
     if not roots:
         return
+    # Loaded where it is needed: it takes as long as a million corners.
+    from pxr import UsdSkel
+
     for root in roots:
         # Points of instances cannot be written: what holds a skeleton is an instance no more.
         for path in root.GetPrefixes():

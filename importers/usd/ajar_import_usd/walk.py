@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom, UsdLux, UsdShade
+from pxr import Sdf, Usd, UsdGeom, UsdShade
 
-from . import camera, curves, instancer, lights, mesh, points, settings, shapes
+from . import camera, curves, instancer, mesh, points, settings, shapes
 from .document import Document, Matrix, Node
 from .layers import Jail
 from .material import Materials
@@ -147,7 +147,10 @@ class Walk:
                 node.camera = camera.camera(self, prim)
             elif prim.IsA(UsdGeom.Gprim):
                 self.report.warn(prim.GetPath(), f"{kind} geometry is dropped")
-            if prim.HasAPI(UsdLux.LightAPI):
+            if prim.HasAPI("LightAPI"):
+                # Loaded where it is needed, with its part of usd-core: that takes as long as a million corners.
+                from . import lights
+
                 lights.light(self, prim, node)
         children = [self.node(child, depth + 1) for child in self.children(prim)]
         node.children += [child for child in children if child]

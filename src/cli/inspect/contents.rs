@@ -93,7 +93,10 @@ pub(super) struct MeshEntry<'a> {
 #[derive(Serialize)]
 pub(super) struct MaterialEntry<'a> {
     pub name: &'a str,
-    /// The first path that it is shown at, as `[material]` tables may name it.
+    /// Its path in its own file, where it has one.
+    #[serde(skip_serializing_if = "str::is_empty")]
+    pub own_path: &'a str,
+    /// The first path that it is shown at; `[material]` tables may name both.
     pub path: Option<String>,
     /// At how many places it is shown.
     pub shown: usize,
@@ -238,8 +241,8 @@ fn materials(scene: &Scene) -> Vec<MaterialEntry<'_>> {
 }
 
 fn material(material: &Material) -> MaterialEntry<'_> {
-    let parameters = differing(material, &Material::default(), &["name"]);
-    MaterialEntry { name: &material.name, path: None, shown: 0, parameters }
+    let parameters = differing(material, &Material::default(), &["name", "path"]);
+    MaterialEntry { name: &material.name, own_path: &material.path, path: None, shown: 0, parameters }
 }
 
 fn texture<'a>(texture: &Texture, image: &'a Image) -> TextureEntry<'a> {

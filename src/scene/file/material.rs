@@ -34,7 +34,7 @@ pub(super) fn read(pattern: &str, mut keys: Keys<'_>, assets: &mut Assets, compl
 }
 
 fn unmatched(pattern: &str, keys: &Keys<'_>, assets: &Assets) {
-    // Who writes the path of a material in its own file means the name at its end.
+    // Who writes the path of a material in another file means the name at its end.
     let name = pattern.rsplit('/').next().unwrap_or(pattern);
     let mut names: Vec<_> = assets.scene.materials.iter().map(|material| material.name.as_str()).collect();
     names.sort_unstable();

@@ -1,4 +1,5 @@
-//! Materials by name, or by the path that they are shown at: the path of a node, `/`, and the name of the material.
+//! Materials by name, by their path in their own file, or by the path that they are shown at: the path of a node, `/`, and
+//! the name of the material.
 
 use super::glob;
 use crate::{Id, Material, Mesh, Node, Scene};
@@ -11,7 +12,7 @@ struct Shown {
     fits: bool,
 }
 
-/// The materials that fit `pattern`. One that fits in some of the places where it is shown, and not by its name, is split:
+/// The materials that fit `pattern`. One that fits in some of the places where it is shown, and not by itself, is split:
 /// those places get a copy, which stands for it here.
 pub(super) fn fitting(pattern: &str, scene: &mut Scene) -> Vec<Id<Material>> {
     let mut places: Vec<Vec<Shown>> = scene.materials.iter().map(|_| Vec::new()).collect();
@@ -22,7 +23,9 @@ pub(super) fn fitting(pattern: &str, scene: &mut Scene) -> Vec<Id<Material>> {
     for (index, places) in places.into_iter().enumerate() {
         let id = Id::new(index);
         let (fits, others): (Vec<_>, Vec<_>) = places.into_iter().partition(|place| place.fits);
-        if glob::matches(pattern, &scene.materials[id].name) || (others.is_empty() && !fits.is_empty()) {
+        let Material { name, path, .. } = &scene.materials[id];
+        let is_meant = glob::matches(pattern, name) || !path.is_empty() && glob::matches_path(pattern, path);
+        if is_meant || others.is_empty() && !fits.is_empty() {
             found.push(id);
         } else if !fits.is_empty() {
             let copy = scene.materials.push(scene.materials[id].clone());

@@ -1,7 +1,10 @@
 //! `[material]` by the path where materials are shown.
 
 use super::{import, right, wrong};
-use crate::{Imported, Material, Node, Overrides, Scene, file::load_asset};
+use crate::{
+    Imported, Material, Node, Overrides, Scene,
+    file::{load_asset, shown},
+};
 
 const TWO: &str = "[[import]]\nfile = \"a.glb\"\n[[import]]\nfile = \"b.glb\"\n";
 
@@ -55,6 +58,16 @@ fn edited(changes: &[&str]) -> Scene {
     let imported = Imported { scene: shared(), ..Imported::default() };
     let overrides = Overrides::parse(changes).unwrap();
     load_asset(&crate::ImportRequest::new("a.glb"), &overrides, imported).unwrap().scene
+}
+
+#[test]
+fn materials_have_paths_in_their_own_files() {
+    for (pattern, found) in [("/World/Looks/Chrome", 1), ("/Looks/*", 1), ("/World/Car/*", 0)] {
+        let mut scene = shared();
+        scene.materials.iter_mut().next().unwrap().path = "/World/Looks/Chrome".into();
+        assert_eq!(shown::fitting(pattern, &mut scene).len(), found, "{pattern}");
+        assert_eq!(scene.materials.len(), 2, "nothing is split");
+    }
 }
 
 #[test]
