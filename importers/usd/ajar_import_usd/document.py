@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any, BinaryIO
 
 import numpy as np
 
+from .blocks import blocks
 from .report import StageError
 
 # Bytes that a node takes, roughly, here and in its reader.
@@ -44,7 +46,8 @@ class Document:
         self.lists: dict[str, list[dict[str, Any]]] = {}
         self.render: dict[str, Any] = {}
         self.variants: list[dict[str, Any]] = []
-        self.chunk: list[bytes | memoryview] = []
+        # Arrays, each in pieces.
+        self.chunk: list[Iterable[bytes | memoryview]] = []
         self.size = 0
 
     def add(self, kind: str, item: dict[str, Any]) -> int:
@@ -68,13 +71,28 @@ class Document:
         # Signed ones of the same size have the same bits.
         return self.array(values.view(np.uint32) if values.dtype == np.int32 else values, width, "<u4")
 
+    def coordinates(self, values: np.ndarray) -> dict[str, int]:
+        """Puts texture coordinates into the binary chunk, with the origin moved from the bottom to the top left."""
+
+        def moved() -> Iterator[memoryview]:
+            for block in blocks(np.asarray(values, dtype="<f4")):
+                block = block.copy()
+                np.subtract(1, block[:, 1], out=block[:, 1])
+                yield block.reshape(-1).view(np.uint8).data
+
+        return self.pieces(moved(), len(values) * 8, len(values))
+
     def bytes(self, data: bytes | memoryview, count: int | None = None) -> dict[str, int]:
         """Puts bytes into the binary chunk."""
+        return self.pieces([data], len(data), len(data) if count is None else count)
+
+    def pieces(self, pieces: Iterable[bytes | memoryview], size: int, count: int) -> dict[str, int]:
+        """Puts an array of `count` items into the binary chunk, in pieces that have `size` bytes together."""
         offset = self.size
-        self.chunk += [data, bytes(-len(data) % 4)]
-        self.size += len(data) + -len(data) % 4
+        self.chunk += [pieces, [bytes(-size % 4)]]
+        self.size += size + -size % 4
         self.check(self.size)
-        return {"offset": offset, "count": len(data) if count is None else count}
+        return {"offset": offset, "count": count}
 
     def check(self, size: int) -> None:
         """Stops where the limit on memory is met."""
@@ -116,7 +134,7 @@ class Document:
         stream.write(struct.pack("<4sII", b"AJAR", 1, 28 + len(text) + self.size))
         stream.write(struct.pack("<I4s", len(text), b"JSON") + text)
         stream.write(struct.pack("<I4s", self.size, b"BIN\0"))
-        stream.writelines(self.chunk)
+        stream.writelines(chain.from_iterable(self.chunk))
 
 
 def count(root: Node) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,21 +42,32 @@ class Values:
         if corners is None or self.per != "corner":
             return self
         if self.indices is not None:
-            return Values(self.values, self.indices[corners], self.per)
-        return Values(self.values[corners], None, self.per)
+            return replace(self, indices=self.indices[corners])
+        return replace(self, values=self.values[corners])
 
     def spread(self, parents: np.ndarray) -> Values:
         """From points or curves to the positions that were made for each."""
         if self.per == "mesh":
             return self
-        return Values(self.values, parents if self.indices is None else self.indices[parents], "position")
+        return replace(self, indices=parents if self.indices is None else self.indices[parents], per="position")
 
     def form(self, walk: Walk) -> dict[str, Any]:
         """As the document wants it."""
-        form: dict[str, Any] = {"values": walk.document.array(self.values, self.values.shape[1]), "per": self.per}
+        form: dict[str, Any] = {"values": self.written(walk), "per": self.per}
         if self.indices is not None:
             form["indices"] = walk.document.indices(self.indices)
         return form
+
+    def written(self, walk: Walk) -> dict[str, int]:
+        """Where the document has the values."""
+        return walk.document.array(self.values, self.values.shape[1])
+
+
+class Coordinates(Values):
+    """Texture coordinates with the origin at the bottom left, as USD has them."""
+
+    def written(self, walk: Walk) -> dict[str, int]:
+        return walk.document.coordinates(self.values)
 
 
 def read(walk: Walk, prim: Usd.Prim, primvar: UsdGeom.Primvar, width: int, sizes: Sizes) -> Values | None:
@@ -106,16 +117,11 @@ def fitted(
     return Values(values, order, per)
 
 
-def texture_coordinates(walk: Walk, prim: Usd.Prim, name: str, sizes: Sizes) -> Values | None:
-    """Texture coordinates by name, with the origin moved to the top left."""
+def texture_coordinates(walk: Walk, prim: Usd.Prim, name: str, sizes: Sizes) -> Coordinates | None:
+    """Texture coordinates by name."""
     primvar = find(prim, name)
-    if primvar is None:
-        return None
-    found = read(walk, prim, primvar, 2, sizes)
-    if found:
-        found.values = found.values.copy()
-        np.subtract(1, found.values[:, 1], out=found.values[:, 1])
-    return found
+    found = read(walk, prim, primvar, 2, sizes) if primvar else None
+    return Coordinates(found.values, found.indices, found.per) if found else None
 
 
 def find(prim: Usd.Prim, name: str) -> UsdGeom.Primvar | None:
