@@ -17,6 +17,9 @@ from .report import StageError
 # Bytes that a node takes, roughly, here and in its reader.
 NODE_SIZE = 1024
 
+Piece = bytes | memoryview
+"""Bytes of the binary chunk."""
+
 Matrix = np.ndarray
 """4 × 4, for row vectors as in USD: its rows are the images of X, Y, Z and the origin."""
 
@@ -47,7 +50,7 @@ class Document:
         self.render: dict[str, Any] = {}
         self.variants: list[dict[str, Any]] = []
         # Arrays, each in pieces.
-        self.chunk: list[Iterable[bytes | memoryview]] = []
+        self.chunk: list[Iterable[Piece]] = []
         self.size = 0
 
     def add(self, kind: str, item: dict[str, Any]) -> int:
@@ -82,11 +85,11 @@ class Document:
 
         return self.pieces(moved(), len(values) * 8, len(values))
 
-    def bytes(self, data: bytes | memoryview, count: int | None = None) -> dict[str, int]:
+    def bytes(self, data: Piece, count: int | None = None) -> dict[str, int]:
         """Puts bytes into the binary chunk."""
         return self.pieces([data], len(data), len(data) if count is None else count)
 
-    def pieces(self, pieces: Iterable[bytes | memoryview], size: int, count: int) -> dict[str, int]:
+    def pieces(self, pieces: Iterable[Piece], size: int, count: int) -> dict[str, int]:
         """Puts an array of `count` items into the binary chunk, in pieces that have `size` bytes together."""
         offset = self.size
         self.chunk += [pieces, [bytes(-size % 4)]]

@@ -115,6 +115,7 @@ def finish(
     sets = walk.materials.uv_names[: max((max(indices, default=-1) for indices in needed), default=-1) + 1]
     wanted = set().union(*needed)
     uvs = []
+    found: primvars.Values | None
     for index, name in enumerate(sets):
         found = primvars.texture_coordinates(walk, prim, name, sizes) if index in wanted else None
         if found is None and index in wanted:
