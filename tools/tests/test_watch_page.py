@@ -223,7 +223,7 @@ def test_memory_of_the_page_does_not_grow(bench: Bench) -> None:
             bench.changed(lambda color=color: (bench.folder / "box.mtl").write_text(material(color)))  # type: ignore[misc]
 
     # Many more than are run by default tell more (the list of images of before has at most 48).
-    edits = int(os.environ.get("AJAR_PAGE_EDITS", "12"))
+    edits = int(os.environ.get("AJAR_PAGE_EDITS", "6"))
     edit(edits)
     frames, before = bench.page.evaluate("Number(canvas.dataset.frames)"), held()
     edit(edits)

@@ -92,7 +92,8 @@ pub(super) fn probe(image: &Image) -> Result<Header, Diagnostic> {
     if header.width.max(header.height) > MAX_SIZE {
         let Header { width, height, .. } = header;
         let why = format!("{width} × {height} texels, more than {MAX_SIZE} on a side");
-        return Err(refuse(image, &why).because(Cause::Resource).hint("scale it down"));
+        // The file's fault: no memory limit would let it in.
+        return Err(refuse(image, &why).hint("scale it down"));
     }
     Ok(header)
 }
