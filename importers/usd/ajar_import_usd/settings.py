@@ -46,11 +46,13 @@ def purposes(walk: Walk, prims: list[Usd.Prim]) -> tuple[str, ...]:
     """Purposes of geometry that the settings among `prims` want to be drawn."""
     for prim in prims:
         attribute = prim.GetAttribute("includedPurposes")
-        if attribute and attribute.HasAuthoredValue():
-            included = tuple(attribute.Get(walk.time))
-            if included != USUAL_PURPOSES:
+        included = attribute.Get(walk.time) if attribute and attribute.HasAuthoredValue() else None
+        if isinstance(included, Vt.TokenArray):
+            if set(included) != set(USUAL_PURPOSES):
                 walk.report.note(prim.GetPath(), f"only what has one of these purposes is drawn: {said(included)}")
-            return included
+            return tuple(included)
+        if included is not None:
+            walk.report.warn(prim.GetPath(), "includedPurposes is ignored: it is no list of tokens")
     return USUAL_PURPOSES
 
 
@@ -82,7 +84,7 @@ def name_what_is_ignored(walk: Walk, prim: Usd.Prim) -> None:
         attribute = prim.GetAttribute(name)
         if attribute and attribute.HasAuthoredValue():
             value = attribute.Get(walk.time)
-            if name == "materialBindingPurposes" and value is not None:
+            if isinstance(value, Vt.TokenArray):
                 # Houdini writes the name of the token for what the schema calls "".
                 value = Vt.TokenArray(["" if token == "allPurpose" else token for token in value])
             if value not in (kept, None, ""):
@@ -95,6 +97,6 @@ def name_what_is_ignored(walk: Walk, prim: Usd.Prim) -> None:
 
 def said(value: object) -> str:
     """A value in words."""
-    if isinstance(value, (Vt.TokenArray, tuple)):
+    if isinstance(value, Vt.TokenArray):
         return ", ".join(token or "all" for token in value) or "none"
     return str(value)
