@@ -208,9 +208,15 @@ def "Coarse" (references = @parts/square.usda@) { uniform token purpose = "proxy
     );
     let both = "def RenderSettings \"S\" { uniform token[] includedPurposes = [\"default\", \"proxy\"] }";
     assert_eq!(drawn(both), ["Plain", "Coarse"]);
-    let number =
-        Stage::new("def RenderSettings \"S\" { int includedPurposes = 3 }\ndef Cube \"C\" {}").scene();
-    assert_eq!(warnings(&number), ["/S: includedPurposes is ignored: it is no list of tokens"]);
+    let number = Stage::new(
+        "def RenderSettings \"S\" { int includedPurposes = 3\nint resolution = 5 }\ndef Cube \"C\" {}",
+    )
+    .scene();
+    let said = [
+        "/S: includedPurposes is ignored: it is no list of tokens",
+        "/S: resolution is ignored: 5 is no pair of integers",
+    ];
+    assert_eq!(warnings(&number), said);
 }
 
 #[test]

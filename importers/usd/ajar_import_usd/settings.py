@@ -59,9 +59,12 @@ def purposes(walk: Walk, prims: list[Usd.Prim]) -> tuple[str, ...]:
 def take(walk: Walk, prim: Usd.Prim) -> None:
     """Camera, size and lens that settings or a product say themselves."""
     base = UsdRender.SettingsBase(prim)
-    size = base.GetResolutionAttr()
-    if size and size.HasAuthoredValue():
-        width, height = size.Get(walk.time)
+    attribute = base.GetResolutionAttr()
+    size = attribute.Get(walk.time) if attribute and attribute.HasAuthoredValue() else None
+    if size is not None and not isinstance(size, Gf.Vec2i):
+        walk.report.warn(prim.GetPath(), f"resolution is ignored: {size} is no pair of integers")
+    elif size is not None:
+        width, height = size
         if 0 < width <= LARGEST and 0 < height <= LARGEST:
             walk.document.render["size"] = [int(width), int(height)]
         else:
