@@ -220,6 +220,23 @@ def "Coarse" (references = @parts/square.usda@) { uniform token purpose = "proxy
 }
 
 #[test]
+fn values_of_another_type_have_a_place() {
+    if !can_run() {
+        return;
+    }
+    for (prim, value) in [
+        ("SphereLight", "string inputs:intensity = \"x\""),
+        ("Camera", "string focalLength = \"z\""),
+        ("Cube", "token size = \"big\""),
+        ("Mesh", "string points = \"a\"\nint[] faceVertexCounts = [3]"),
+    ] {
+        let error = Stage::new(&format!("def {prim} \"Odd\" {{ {value} }}")).import().unwrap_err();
+        assert_eq!(error.element.as_deref(), Some("/Odd"), "{prim}: {error}");
+        assert!(error.message.starts_with("holds a value that cannot be used: "), "{prim}: {error}");
+    }
+}
+
+#[test]
 fn settings_that_are_ignored_are_named() {
     if !can_run() {
         return;

@@ -51,16 +51,27 @@ class Walk:
         # Names of cameras by path.
         self.cameras: dict[Sdf.Path, str] = {}
         self.seen = 0
+        # The prim that was met last.
+        self.place = Sdf.Path.absoluteRootPath
         self.settings = settings.chosen(self)
         self.purposes = settings.purposes(self, self.settings)
 
     def run(self) -> None:
         """Fills the document."""
+        try:
+            self.fill_document()
+        except (TypeError, ValueError) as error:
+            # usd-core hands on values whose type is not that of the schema.
+            raise StageError(f"holds a value that cannot be used: {error}", str(self.place)) from error
+
+    def fill_document(self) -> None:
+        """All nodes from the root down, then what the settings say."""
         root = Node(self.stage.GetRootLayer().GetDisplayName(), self.upright)
         children = [self.node(child, 0) for child in self.children(self.stage.GetPseudoRoot())]
         root.children = [child for child in [*children, *self.top] if child]
         self.document.place(root)
         for prim in self.settings:
+            self.place = prim.GetPath()
             settings.take(self, prim)
 
     def children(self, prim: Usd.Prim) -> Any:
@@ -72,6 +83,7 @@ class Walk:
         if depth > DEEPEST:
             raise StageError(f"prims are nested more than {DEEPEST} deep", str(prim.GetPath()))
         self.seen += 1
+        self.place = prim.GetPath()
         if self.seen % STEP == 0:
             self.report.progress(f"{self.seen} prims")
         if self.is_hidden(prim) or prim.IsA(UsdShade.Material):
