@@ -5,7 +5,10 @@
 //! pixel, the share w_B = κμ/(κμ + C) of f belongs to the base, which so never adds more than κμ, and the rest to the
 //! chains. Both compute the same C, so the shares add up to 1.
 
+use std::ops::Range;
+
 use ajar_render::{
+    bsdf::{Mode, Side},
     math::{Rgb, scalar},
     path::{ROULETTE_DEPTH, Vertex},
     sampler::Sequence,
@@ -32,7 +35,9 @@ pub struct Split<'a> {
     pub space: Space<'a>,
     /// Brightness of each pixel of the window, nowhere 0.
     pub brightness: &'a [f64],
-    /// Bidirectional samples for each eye path: seeds come from both.
+    /// How many times as many samples as usual each pixel gets.
+    pub effort: &'a [u32],
+    /// Bidirectional samples for each usual eye path: seeds come from both.
     pub beside: f64,
 }
 
@@ -53,20 +58,26 @@ impl Split<'_> {
 
     /// What a bidirectional sample of `x`, weighed by f*/p, is worth as a seed.
     pub fn seed_beside(&self, x: &Path) -> f64 {
-        let brightness = self.space.pixel(x.raster).map_or(1.0, |pixel| self.brightness[pixel]);
-        let contribution = contribution(x);
-        let share = 1.0 - self.seeds_of_base(x, contribution, brightness);
+        let Some(pixel) = self.space.pixel(x.raster) else { return 0.0 };
+        let (brightness, contribution) = (self.brightness[pixel], contribution(x));
+        let share = 1.0 - self.seeds_of_base(x, contribution, pixel);
         share * Self::residual(contribution, brightness) / brightness
     }
 
     /// The part of the seeds at `x` that is left to path tracing, by the balance heuristic; the rest is left to
     /// bidirectional samples.
-    fn seeds_of_base(&self, x: &Path, contribution: f64, brightness: f64) -> f64 {
-        if !self.is_heavy(contribution, brightness) {
+    fn seeds_of_base(&self, x: &Path, contribution: f64, pixel: usize) -> f64 {
+        if !self.is_heavy(contribution, self.brightness[pixel]) {
             return 1.0;
         }
-        let (base, beside) = (x.scalar() / contribution, self.beside * bidirectional_density(x));
-        base / (base + beside)
+        let base = f64::from(self.effort[pixel]) * x.scalar() / contribution;
+        base / (base + self.beside * bidirectional_density(x))
+    }
+
+    /// Numbers of the samples that a pixel gets in `round`.
+    fn samples(&self, settings: &Settings, round: u32, pixel: usize) -> Range<u64> {
+        let (usual, effort) = (settings.samples(round), u64::from(self.effort[pixel]));
+        usual.start * effort..usual.end * effort
     }
 }
 
@@ -124,8 +135,8 @@ pub fn contribution(x: &Path) -> f64 {
     x.scalar() / both
 }
 
-/// Adds the base of a round to the film. Returns what each pixel leaves to the chains as their seeds: the sum over its
-/// samples of C·w_R/μ, of heavy paths the part that bidirectional samples do not look for.
+/// Adds the base of a round to the film. Returns what each pixel leaves to the chains as their seeds: the sum over as
+/// many samples as usual of C·w_R/μ, of heavy paths the part that bidirectional samples do not look for.
 pub fn render(
     split: &Split<'_>,
     settings: &Settings,
@@ -133,7 +144,6 @@ pub fn render(
     add: impl Fn(usize, Rgb) + Sync,
 ) -> Vec<f64> {
     let window = split.space.window;
-    let samples = 1.0 / f64::from(settings.samples_per_round);
     (0..window.pixels())
         .into_par_iter()
         .with_min_len(window.width() as usize)
@@ -142,7 +152,7 @@ pub fn render(
                 return 0.0;
             }
             let mut shares = Shares::new(split, pixel);
-            for sample in settings.samples(round) {
+            for sample in split.samples(settings, round, pixel) {
                 trace(&split.space, settings.seed, pixel, sample, &mut shares);
                 if std::mem::take(&mut shares.heavy) {
                     let mut heavy = Seeds::new(split, pixel, path);
@@ -150,37 +160,75 @@ pub fn render(
                     shares.left += heavy.left_of_heavy;
                 }
             }
-            add(pixel, shares.sum * samples);
-            shares.left
+            let effort = f64::from(split.effort[pixel]);
+            add(pixel, shares.sum / (f64::from(settings.samples_per_round) * effort));
+            shares.left / effort
         })
         .collect()
 }
 
-/// Mean brightness of the samples of each pixel, without light seen directly. One pixel speaks for a square of them,
-/// `step` on each side.
-pub fn means(space: &Space<'_>, settings: &Settings, round: u32, step: usize) -> Vec<f64> {
-    struct Indirect(f64);
-    impl Visitor for Indirect {
-        fn found(&mut self, path: &Found<'_>) {
-            if path.edges > 1 {
-                self.0 += scalar(path.value);
-            }
+/// What the samples of a pixel see on average.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Glance {
+    /// Brightness, without light seen directly.
+    pub brightness: f64,
+    /// Share of them that something like a mirror or glass sends on.
+    pub sent_on: f64,
+}
+
+#[derive(Default)]
+struct Look {
+    brightness: f64,
+    walked: Vec<Vertex>,
+}
+
+impl Visitor for Look {
+    fn leave(&mut self, vertex: &Vertex) {
+        self.walked.push(*vertex);
+    }
+
+    fn found(&mut self, path: &Found<'_>) {
+        if path.edges > 1 {
+            self.brightness += scalar(path.value);
         }
     }
-    let mean = |pixel| {
-        let mut sum = Indirect(0.0);
-        for sample in settings.samples(round) {
-            trace(space, settings.seed, pixel, sample, &mut sum);
+}
+
+/// Density of a direction from which on a surface counts as a mirror, 1/sr: the highlight of a roughness of about .3.
+const SHARP: f64 = 10.0;
+
+/// Whether the first surface of a walk sends it on much as a mirror or glass would.
+fn is_sent_on(walked: &[Vertex]) -> bool {
+    match walked {
+        [_, first, ..] if first.mode != Mode::Smooth => true,
+        [lens, first, next, ..] => {
+            let [known, new] = [lens, next].map(|end| first.frame.to_local((end.p - first.p).normalize()));
+            first.bsdf.pdf(Side::TowardLight, known, new) > SHARP
         }
-        sum.0 / f64::from(settings.samples_per_round)
+        _ => false,
+    }
+}
+
+/// What the samples of each pixel see. One pixel speaks for a square of them, `step` on each side.
+pub fn glances(space: &Space<'_>, settings: &Settings, round: u32, step: usize) -> Vec<Glance> {
+    let mean = |pixel| {
+        let mut look = Look::default();
+        let mut sent_on = 0;
+        for sample in settings.samples(round) {
+            look.walked.clear();
+            trace(space, settings.seed, pixel, sample, &mut look);
+            sent_on += usize::from(is_sent_on(&look.walked));
+        }
+        let samples = f64::from(settings.samples_per_round);
+        Glance { brightness: look.brightness / samples, sent_on: sent_on as f64 / samples }
     };
     let width = space.window.width() as usize;
     let columns = width.div_ceil(step);
     let rows = (space.window.pixels() / width).div_ceil(step);
-    let found: Vec<f64> = (0..columns * rows)
+    let found: Vec<Glance> = (0..columns * rows)
         .into_par_iter()
         .map(|square| (square / columns * width + square % columns) * step)
-        .map(|pixel| if space.cancelled() { 0.0 } else { mean(pixel) })
+        .map(|pixel| if space.cancelled() { Glance::default() } else { mean(pixel) })
         .collect();
     (0..space.window.pixels())
         .map(|pixel| found[pixel / width / step * columns + pixel % width / step])
@@ -256,7 +304,7 @@ impl Visitor for Shares<'_> {
     }
 }
 
-/// Finds the path of a pixel at which the sum of what is left to the chains exceeds `rest`, and builds it into `path`;
+/// Finds the path of a pixel at which the sum of what is left to the chains, as [`render`] has it, exceeds `rest`, and builds it into `path`;
 /// `None` if rounding lost it.
 pub fn replay(
     split: &Split<'_>,
@@ -265,8 +313,9 @@ pub fn replay(
     (pixel, rest): (usize, f64),
     path: &mut Path,
 ) -> Option<()> {
+    let rest = rest * f64::from(split.effort[pixel]);
     let mut seeds = Seeds { rest, ..Seeds::new(split, pixel, path) };
-    for sample in settings.samples(round) {
+    for sample in split.samples(settings, round, pixel) {
         seeds.walked.clear();
         let (raster, lens) = trace(&split.space, settings.seed, pixel, sample, &mut seeds);
         if seeds.found {
@@ -280,6 +329,7 @@ pub fn replay(
 /// Builds the paths that chains may start from.
 struct Seeds<'a> {
     split: &'a Split<'a>,
+    pixel: usize,
     brightness: f64,
     walked: Vec<Vertex>,
     path: &'a mut Path,
@@ -294,7 +344,7 @@ struct Seeds<'a> {
 impl<'a> Seeds<'a> {
     fn new(split: &'a Split<'a>, pixel: usize, path: &'a mut Path) -> Self {
         let (brightness, rest) = (split.brightness[pixel], f64::INFINITY);
-        Self { split, brightness, walked: Vec::new(), path, left_of_heavy: 0.0, rest, found: false }
+        Self { split, pixel, brightness, walked: Vec::new(), path, left_of_heavy: 0.0, rest, found: false }
     }
 
     fn build(&mut self, path: &Found<'_>) -> Option<()> {
@@ -318,8 +368,7 @@ impl Visitor for Seeds<'_> {
             return;
         }
         if is_heavy {
-            left *=
-                self.build(path).map_or(1.0, |()| self.split.seeds_of_base(self.path, c, self.brightness));
+            left *= self.build(path).map_or(1.0, |()| self.split.seeds_of_base(self.path, c, self.pixel));
             self.left_of_heavy += left;
         }
         self.rest -= left;

@@ -120,6 +120,7 @@ impl Rounds for AjarRounds<'_> {
         let split = Split {
             space: self.space,
             brightness: &self.plan.brightness,
+            effort: &self.plan.effort,
             beside: f64::from(beside) / samples,
         };
         let left = base::render(&split, settings, round, |pixel, value| film.add(pixel, value));

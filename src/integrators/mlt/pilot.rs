@@ -9,7 +9,7 @@ use ajar_render::{film::Film, math::scalar};
 use rayon::prelude::*;
 
 use super::{
-    base::{self, Split},
+    base::{self, Glance, Split},
     path::{Path, Space},
     plain::{PlainChains, Run},
     target::Aim,
@@ -21,13 +21,15 @@ const ROUGH_MUTATIONS: u64 = 1 << 17;
 /// How much smaller the error of paths alone must be for the first look to decide: it is right within a third.
 const CLEARLY: f64 = 0.7;
 /// Mutations a pixel that find the brightness, and fewest and most of all: large images are learned more coarsely.
-const BRIGHTNESS_MUTATIONS: u64 = 12;
-const FEWEST_MUTATIONS: u64 = 1 << 20;
+const BRIGHTNESS_MUTATIONS: u64 = 16;
+const FEWEST_MUTATIONS: u64 = 1 << 18;
 const MOST_MUTATIONS: u64 = 1 << 22;
 /// Steps of each chain: they begin where bidirectional samples say, and need not go far from there.
 const LENGTH: u32 = 128;
-/// Mutations that find what chains would cost and gain.
-const GAIN_MUTATIONS: u64 = 1 << 19;
+/// Mutations that find what chains would cost and gain, a pixel, fewest and most.
+const GAIN_MUTATIONS: u64 = 8;
+const FEWEST_GAIN_MUTATIONS: u64 = 1 << 17;
+const MOST_GAIN_MUTATIONS: u64 = 1 << 19;
 /// Mutations that the square of pixels to average over should hold.
 const AVERAGED: f64 = 300.0;
 /// Eye paths, twice, that look for what the chains missed, and most a pixel.
@@ -41,6 +43,12 @@ const ROUGH_ROUND: u32 = u32::MAX - 4;
 const FLOOR: f64 = 0.1;
 /// Steps that a chain needs to forget a pixel: measured between 4 in easy scenes and 47 behind a door.
 const CORRELATION: f64 = 15.0;
+/// How many times as many eye paths pixels get at most that are seen through mirrors or glass alone. Curved ones break
+/// what they show into pieces smaller than a pixel; chains seldom pass from one to another, so that eye paths have to find
+/// each.
+const MOST_EFFORT: f64 = 12.0;
+/// Eye paths that this may add, relative to the usual ones.
+const MOST_ADDED: f64 = 0.5;
 /// Even spread makes an eye path worth about this many random ones where paths alone do well.
 const EVENNESS: f64 = 1.5;
 /// Bookkeeping of a mutation, in rays.
@@ -58,6 +66,8 @@ const BIDIRECTIONAL_COST: f64 = 8.0;
 pub struct Plan {
     /// Mean of the channels of each pixel of the window, smoothed, nowhere 0.
     pub brightness: Vec<f64>,
+    /// How many times as many eye paths as usual each pixel gets.
+    pub effort: Vec<u32>,
     /// Mutations for each eye path.
     pub mutations_per_sample: f64,
     /// Bidirectional samples for each eye path, which look for seeds too.
@@ -74,12 +84,14 @@ pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
     // Chains may have missed what walks find easily. A brightness that is too low costs much, one that is too high
     // little.
     let chained = seen_by_chains(chains, Some(&rough), mutations(chains));
-    let brightness: Vec<f64> = chained.iter().zip(seen_by_walks(chains)).map(|(a, b)| a.max(b)).collect();
-    let gain = gain_over(chains, &brightness, GAIN_MUTATIONS);
+    let (walked, sent_on) = seen_by_walks(chains);
+    let brightness: Vec<f64> = chained.into_iter().zip(walked).map(|(a, b)| a.max(b)).collect();
+    let mutations = GAIN_MUTATIONS * chains.space.window.pixels() as u64;
+    let gain = gain_over(chains, &brightness, mutations.clamp(FEWEST_GAIN_MUTATIONS, MOST_GAIN_MUTATIONS));
     let gain = gain.filter(|gain| pays(gain, 1.0))?;
     let mutations_per_sample = gain.mutations_per_sample();
     let beside = gain.beside(mutations_per_sample);
-    Some(Plan { brightness, mutations_per_sample, beside, residual: gain.residual })
+    Some(Plan { brightness, effort: effort(&sent_on), mutations_per_sample, beside, residual: gain.residual })
 }
 
 /// Pixels on each side over which to average `samples` of `pixels`.
@@ -121,8 +133,16 @@ fn seen_by_chains(chains: &PlainChains<'_>, before: Option<&[f64]>, mutations: u
     smooth.iter().map(|b| b.max(FLOOR * mean)).collect()
 }
 
-/// Brightness of each pixel as two sets of eye paths agree on it: what only one of them found is a firefly.
-fn seen_by_walks(chains: &PlainChains<'_>) -> Vec<f64> {
+/// How many times as many eye paths as usual each pixel gets, given the share of them that mirrors and glass send on.
+fn effort(sent_on: &[f64]) -> Vec<u32> {
+    let mean = sent_on.iter().sum::<f64>() / sent_on.len() as f64;
+    let added = (MOST_EFFORT - 1.0).min(MOST_ADDED / mean);
+    sent_on.iter().map(|share| 1 + (added * share).round() as u32).collect()
+}
+
+/// Brightness of each pixel as two sets of eye paths agree on it, for what only one of them found is a firefly; and the
+/// share of them that mirrors and glass send on.
+fn seen_by_walks(chains: &PlainChains<'_>) -> (Vec<f64>, Vec<f64>) {
     let space = &chains.space;
     let pixels = space.window.pixels();
     let reach = reach(mutations(chains), pixels);
@@ -132,9 +152,15 @@ fn seen_by_walks(chains: &PlainChains<'_>) -> Vec<f64> {
         // Other samples than those of the image, which must not depend on its own brightness.
         let seed = !chains.cx.settings.seed;
         let settings = Settings { seed, samples_per_round: walks, ..chains.cx.settings.clone() };
-        smooth(&base::means(space, &settings, half, step), space.window.width() as usize, reach)
+        base::glances(space, &settings, half, step)
     });
-    a.iter().zip(b).map(|(a, b)| a.min(b)).collect()
+    let smoothed = |glances: &[Glance], of: fn(&Glance) -> f64| {
+        smooth(&glances.iter().map(of).collect::<Vec<_>>(), space.window.width() as usize, reach)
+    };
+    let agreed = |of: fn(&Glance) -> f64, join: fn(f64, f64) -> f64| {
+        smoothed(&a, of).into_iter().zip(smoothed(&b, of)).map(|(a, b)| join(a, b)).collect()
+    };
+    (agreed(|seen| seen.brightness, f64::min), agreed(|seen| seen.sent_on, |a, b| (a + b) / 2.0))
 }
 
 /// Mean over the square of pixels around each.
