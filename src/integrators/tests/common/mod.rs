@@ -2,6 +2,8 @@
 #![allow(dead_code, clippy::unwrap_used, reason = "shared by several tests; a failing test panics")]
 
 pub mod compare;
+pub mod reversibility;
+pub mod samples;
 pub mod scenes;
 pub mod shapes;
 pub mod stationarity;

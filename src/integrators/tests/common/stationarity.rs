@@ -11,7 +11,6 @@ use ajar_integrators::{
         choice::{CLASSES, Table, class},
         lens_subpaths::{LensSubpaths, Spread},
         path::{Path, Space},
-        seeds::{Bootstrap, Candidate, resample},
         target::Target,
     },
 };
@@ -20,6 +19,8 @@ use ajar_render::{
     rng::{Purpose, Rng},
 };
 use rayon::prelude::*;
+
+use super::samples::Samples;
 
 const TILES: usize = 4;
 const LENGTHS: usize = 8;
@@ -92,17 +93,6 @@ fn excess(z: &[[f64; BLOCKS]]) -> f64 {
     (mean_square(z, |_| 1.0) - mean) / variance.sqrt().max(1e-12)
 }
 
-/// Makes the weights of candidates those of the target.
-fn weigh(bootstrap: &Bootstrap<'_>, candidates: &mut [Candidate], target: &dyn Target) {
-    candidates.par_iter_mut().for_each_init(
-        || (bootstrap.tracer(), Path::with_capacity()),
-        |(tracer, path), candidate| {
-            let found = bootstrap.replay(candidate, tracer, path);
-            candidate.weight *= found.map_or(0.0, |()| target.aim(path).weight);
-        },
-    );
-}
-
 /// Runs `mutations`, chosen by `table`, for `steps` steps from each of `seeds` seeds.
 pub fn drift(
     world: &World,
@@ -113,27 +103,19 @@ pub fn drift(
     seeds: usize,
 ) -> Drift {
     let space = Space::new(world, settings.window, settings.max_depth);
-    let bootstrap = Bootstrap { space, seed: settings.seed, round: steps, samples: seeds as u32 };
-    let mut candidates = bootstrap.candidates();
-    weigh(&bootstrap, &mut candidates, target);
-    let chosen = resample(&mut candidates, seeds, &mut Rng::new(settings.seed, Purpose::Test, 0, 1));
+    let samples = Samples::draw(space, settings, target, (steps, seeds));
     let kernel = Kernel { space, mutations, table, target };
     let stream = |i: usize| Rng::new(settings.seed, Purpose::Chain, steps, i as u64);
-    let mut by_sample: Vec<(u32, usize)> =
-        chosen.iter().enumerate().map(|(i, &seed)| (candidates[seed as usize].sample, i)).collect();
-    by_sample.sort_unstable();
     let blocks: Vec<_> = (0..BLOCKS)
         .into_par_iter()
         .map(|block| {
-            let (mut tracer, mut path) = (bootstrap.tracer(), Path::with_capacity());
+            let (mut tracer, mut path) = (samples.bootstrap.tracer(), Path::with_capacity());
             let mut chain = Chain::new(kernel, stream(0));
             let mut sums = [[0.0; 3]; COUNT];
-            let mine =
-                by_sample.chunk_by(|a, b| a.0 == b.0).filter(|one| one[0].0 as usize % BLOCKS == block);
-            for sample in mine {
+            for group in samples.groups(block, BLOCKS) {
                 let mut change = Vec::<(usize, f64)>::new();
-                for &(_, i) in sample {
-                    if bootstrap.replay(&candidates[chosen[i] as usize], &mut tracer, &mut path).is_none() {
+                for (i, candidate) in group {
+                    if samples.bootstrap.replay(candidate, &mut tracer, &mut path).is_none() {
                         continue;
                     }
                     chain.share(LensSubpaths::new(
