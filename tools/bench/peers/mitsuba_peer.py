@@ -56,10 +56,10 @@ def load(folder, scene):
 def main():
     folder, variant, kind, seconds, prefix = Path(sys.argv[1]), *sys.argv[2:]
     mi.set_variant(variant)
-    drjit.set_thread_count(1)
     scene = json.loads((folder / "scene.json").read_text())
     began, total, passes = time.process_time(), 0.0, 0
     loaded = load(folder, scene)
+    drjit.set_thread_count(1)  # not before: it reads images by a pool of threads, and waits for ever for the only one
     integrator = mi.load_dict({"type": kind, "max_depth": scene["max_depth"], "rr_depth": ROULETTE})
     for limit in (float(s) for s in seconds.split(",")):
         while time.process_time() - began < limit:
