@@ -164,6 +164,14 @@ fn under_the_sky() {
 }
 
 #[test]
+fn under_a_wide_sun() {
+    let mut b = stage();
+    let (from, to) = (DVec3::new(0.5, 1.6, 1.4), DVec3::new(0.0, -0.5, -0.3));
+    b.light(LightKind::Directional { illuminance: 5.0, angle: 0.9 }, from, to);
+    assert_same("wide sun", b, 0);
+}
+
+#[test]
 fn under_lights_without_extent() {
     let (from, to) = (DVec3::new(0.5, 1.6, 1.4), DVec3::new(0.0, -0.5, -0.3));
     for (name, kind) in [
