@@ -304,8 +304,8 @@ impl Visitor for Shares<'_> {
     }
 }
 
-/// Finds the path of a pixel at which the sum of what is left to the chains, as [`render`] has it, exceeds `rest`, and builds it into `path`;
-/// `None` if rounding lost it.
+/// Finds the path of a pixel at which the sum of what is left to the chains, as [`render`] has it, exceeds `rest`, and
+/// builds it into `path`; `None` if rounding lost it.
 pub fn replay(
     split: &Split<'_>,
     settings: &Settings,

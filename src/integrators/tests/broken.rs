@@ -1,4 +1,5 @@
-//! Teeth of the test of reversibility: mutations with a wrong factor, or an uneven kernel, must fail it (mlt.md §8 V5.5).
+//! Teeth of the tests of reversibility and stationarity: mutations with a wrong factor, or an uneven kernel, must fail them
+//! (mlt.md §8 V5.5).
 #![allow(clippy::unwrap_used, reason = "a failing test panics")]
 
 mod common;
@@ -17,7 +18,7 @@ use ajar_integrators::mlt::{
     target::Plain,
 };
 use ajar_render::rng::Rng;
-use common::{reversibility::imbalance, samples::Samples, scenes::SCENES, settings};
+use common::{reversibility::imbalance, samples::Samples, scenes::SCENES, settings, stationarity::drift};
 
 type Error = fn(&Space<'_>, &Path, &Path, &Aux) -> f64;
 
@@ -117,4 +118,24 @@ fn a_wrong_factor_or_an_uneven_kernel_shows() {
     let kernels =
         kernels.map(|(what, inner, drops)| (what, Broken { inner, error: |_, _, _, _| 1.0, drops }));
     assert_all_show(factors.into_iter().chain(kernels));
+}
+
+/// What goes wrong by much also moves the target itself.
+#[test]
+fn a_wrong_factor_drifts() {
+    let scene = SCENES.iter().find(|scene| scene.name == "mirror and glass").unwrap();
+    let world = (scene.world)();
+    let settings = settings(&world, 5, scene.depth, 1);
+    let variants: [(&dyn Mutation, Error); 4] = [
+        (&Bidirectional, |space, x, _, aux| 1.0 / Chances::new(space, x, aux).range),
+        (&Lens, |_, _, y, _| 1.0 / y.nodes[y.edges()].to_light),
+        (&LensSubpath, |_, _, y, aux| 1.0 / from_eye(y, aux)),
+        (&EyeChain, |_, _, y, aux| 1.0 / from_eye(y, aux)),
+    ];
+    for (inner, error) in variants {
+        let broken = Broken { inner, error, drops: |_, _, _| false };
+        let found = drift(&world, &settings, (&[&broken], &Table::uniform(&[1.0])), &Plain, 8, 20_000);
+        println!("{}: {found:.2?}", broken.name());
+        assert!(!found.is_none(), "{} went unnoticed", broken.name());
+    }
 }

@@ -160,5 +160,7 @@ fn propose(kernel: &Kernel<'_>, x: &Path, y: &mut Proposal, rng: &mut Rng) -> Op
     let (aim_x, aim_y, of_y) = (kernel.target.aim(x), kernel.target.aim(y), selection(y));
     let x = State { path: x, aim: &aim_x, selection: &of_x };
     let y = State { path: y, aim: &aim_y, selection: &of_y };
-    Some(Proposed { acceptance: ratio(kernel, &x, &y, m, &aux).min(1.0), labels: aux.labels })
+    // The driver drops what is not a number.
+    let ratio = Some(ratio(kernel, &x, &y, m, &aux)).filter(|ratio| !ratio.is_nan())?;
+    Some(Proposed { acceptance: ratio.min(1.0), labels: aux.labels })
 }
