@@ -3,8 +3,8 @@
 use ajar_render::{
     World,
     bsdf::{Evaluation, Mode},
-    math::Rgb,
-    path::{Edge, Kind, Stop, Subpath, Vertex, sweep::Densities},
+    math::{Rgb, scalar},
+    path::{Edge, Kind, ROULETTE_DEPTH, Stop, Subpath, Vertex, sweep::Densities},
 };
 use glam::{DVec2, DVec3};
 
@@ -27,10 +27,19 @@ impl End {
     }
 }
 
+/// Whether a path is wanted, given its raster position and what path tracing alone would make of it, f*/p, if nothing
+/// were in its way.
+pub type Wanted<'w> = &'w (dyn Fn(DVec2, f64) -> bool + Sync);
+
 /// Arrays of the sweep, kept between connections.
 pub struct Connector<'w> {
     world: &'w World,
     light_fraction: f64,
+    /// Which paths are wanted, all if nothing is said. Asked before looking whether something is in the way, which is most
+    /// of the work.
+    pub wanted: Option<Wanted<'w>>,
+    /// Raster position of the eye subpath, pixels.
+    pub raster: DVec2,
     to_eye: [f64; MAX_VERTICES],
     to_light: [f64; MAX_VERTICES],
     connectable: [bool; MAX_VERTICES],
@@ -71,6 +80,8 @@ impl<'w> Connector<'w> {
         Self {
             world,
             light_fraction,
+            wanted: None,
+            raster: DVec2::ZERO,
             to_eye: [0.0; MAX_VERTICES],
             to_light: [0.0; MAX_VERTICES],
             connectable: [false; MAX_VERTICES],
@@ -94,7 +105,8 @@ impl<'w> Connector<'w> {
         self.connectable[0] = true;
         self.to_light[1] = stop.arrival_as_end * x1.survival(t - 2);
         self.to_eye[0] = self.emission_density(&x0, x1, &edge);
-        Contribution { value, weight: self.weight(&x0, 0, t) }
+        let found = self.weigh(value, &x0, (0, t), inner(&[], &eye.stops[1..t - 1]));
+        if self.is_wanted(&found, self.raster) { found.contribution } else { Contribution::NONE }
     }
 
     /// Technique s = 1: `x0`, a light end sampled with density `density`, seen from the eye subpath's `t`-th vertex.
@@ -106,7 +118,7 @@ impl<'w> Connector<'w> {
         let emitted = self.world.emitted(x0, edge.to_eye) * (self.world.coverage(x0) / density);
         let at_eye = end.vertex.evaluate(-edge.to_eye, end.to_previous);
         let value = emitted * end.throughput * at_eye.value * geometry(x0, &end.vertex, &edge);
-        let value = self.visible(value, x0, &end.vertex, &edge);
+        let value = self.seen(value, x0, &end.vertex, &edge);
         if value == Rgb::ZERO {
             return Contribution::NONE;
         }
@@ -114,7 +126,8 @@ impl<'w> Connector<'w> {
         self.connectable[0] = true;
         self.to_eye[0] = self.emission_density(x0, &end.vertex, &edge);
         self.join_eye(eye, &end, &at_eye, x0, &edge, (1, t));
-        Contribution { value, weight: self.weight(x0, 1, t) }
+        let found = self.weigh(value, x0, (1, t), inner(&[], &eye.stops[1..t]));
+        self.looked_for(found, self.raster, x0, &end.vertex, &edge)
     }
 
     /// Technique s ≥ 2, t ≥ 2.
@@ -132,7 +145,7 @@ impl<'w> Connector<'w> {
         let at_eye = e.vertex.evaluate(-edge.to_eye, e.to_previous);
         let scattered = l.throughput * at_light.value * at_eye.value * e.throughput;
         let value = scattered * geometry(&l.vertex, &e.vertex, &edge);
-        let value = self.visible(value, &l.vertex, &e.vertex, &edge);
+        let value = self.seen(value, &l.vertex, &e.vertex, &edge);
         if value == Rgb::ZERO {
             return Contribution::NONE;
         }
@@ -140,7 +153,9 @@ impl<'w> Connector<'w> {
         self.fill_eye(eye, t, s);
         self.join_light(light, &l, &at_light, &e.vertex, &edge, (s, t));
         self.join_eye(eye, &e, &at_eye, &l.vertex, &edge, (s, t));
-        Contribution { value, weight: self.weight(&light.stops[0].vertex, s, t) }
+        let between = inner(&light.stops[1..s], &eye.stops[1..t]);
+        let found = self.weigh(value, &light.stops[0].vertex, (s, t), between);
+        self.looked_for(found, self.raster, &l.vertex, &e.vertex, &edge)
     }
 
     /// Technique t = 1: the light subpath's `s`-th vertex, s ≥ 2, seen through the lens point `lens`.
@@ -152,7 +167,7 @@ impl<'w> Connector<'w> {
         let scattering = end.vertex.evaluate(end.to_previous, seen.direction);
         let value =
             end.throughput * scattering.value * (end.vertex.projected(seen.direction) * seen.importance);
-        let value = self.visible(value, &end.vertex, &lens, &edge);
+        let value = self.seen(value, &end.vertex, &lens, &edge);
         if value == Rgb::ZERO {
             return None;
         }
@@ -161,13 +176,38 @@ impl<'w> Connector<'w> {
         self.connectable[k] = true;
         self.to_light[k] = seen.importance * end.vertex.projected(seen.direction);
         self.join_light(light, &end, &scattering, &lens, &edge, (s, 1));
-        let weight = self.weight(&light.stops[0].vertex, s, 1);
-        Some(Splat { raster: seen.raster, lens, found: Contribution { value, weight } })
+        let found = self.weigh(value, &light.stops[0].vertex, (s, 1), inner(&light.stops[1..s], &[]));
+        let found = self.looked_for(found, seen.raster, &end.vertex, &lens, &edge);
+        Some(Splat { raster: seen.raster, lens, found })
     }
 
-    /// `value` times what of it crosses the edge; no ray is cast for nothing.
-    fn visible(&self, value: Rgb, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
-        if value == Rgb::ZERO { value } else { value * self.world.transmittance(light, eye, edge) }
+    /// `value` times what of it crosses the edge, unless that is looked for later; no ray is cast for nothing.
+    fn seen(&self, value: Rgb, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
+        let later = value == Rgb::ZERO || self.wanted.is_some();
+        if later { value } else { value * self.world.transmittance(light, eye, edge) }
+    }
+
+    fn is_wanted(&self, found: &Weighed, raster: DVec2) -> bool {
+        self.wanted.is_none_or(|wanted| wanted(raster, found.alone))
+    }
+
+    /// What of `found` crosses the edge, if it is wanted and nobody has looked yet.
+    fn looked_for(
+        &self,
+        found: Weighed,
+        raster: DVec2,
+        light: &Vertex,
+        eye: &Vertex,
+        edge: &Edge,
+    ) -> Contribution {
+        let Contribution { value, weight } = found.contribution;
+        if self.wanted.is_none() {
+            return found.contribution;
+        }
+        if !self.is_wanted(&found, raster) {
+            return Contribution::NONE;
+        }
+        Contribution { value: value * self.world.transmittance(light, eye, edge), weight }
     }
 
     fn emission_density(&self, x0: &Vertex, x1: &Vertex, edge: &Edge) -> f64 {
@@ -233,18 +273,60 @@ impl<'w> Connector<'w> {
         self.to_light[s - 1] = back.density(at.toward_light * x.survival(t), x, previous, false);
     }
 
-    fn weight(&self, x0: &Vertex, s: usize, t: usize) -> f64 {
+    /// Weighs what a technique found, where `inner` are the vertices between the ends, from the eye's side.
+    fn weigh<'v>(
+        &self,
+        value: Rgb,
+        x0: &Vertex,
+        (s, t): (usize, usize),
+        inner: impl Iterator<Item = &'v Stop>,
+    ) -> Weighed {
         let k = s + t - 1;
-        Densities {
+        let densities = Densities {
             to_eye: &self.to_eye[..=k],
             to_light: &self.to_light[..=k],
             connectable: &self.connectable[..=k],
             light: self.world.lights.density(x0),
             light_can_be_hit: x0.can_be_met(),
             light_fraction: self.light_fraction,
+        };
+        // Technique s walks on at x_{s+1}, and so survives roulette there.
+        let fewer = if self.wanted.is_some() { roulette_of_walks(inner) } else { 1.0 };
+        let (mut all, mut by_eye) = (0.0, 0.0);
+        densities.for_each_ratio(s, |s, ratio| {
+            all += ratio;
+            if s < 2 {
+                by_eye += if k > s + ROULETTE_DEPTH { ratio * fewer } else { ratio };
+            }
+        });
+        if t == 1 {
+            by_eye *= self.light_fraction;
         }
-        .balance_weight(s)
+        Weighed { contribution: Contribution { value, weight: 1.0 / all }, alone: scalar(value) / by_eye }
     }
+}
+
+/// What a technique found, and what path tracing alone would make of it, where a filter asks.
+struct Weighed {
+    contribution: Contribution,
+    /// f*/p; infinite where path tracing never finds the path.
+    alone: f64,
+}
+
+/// Vertices between the ends of a path, from the eye's side.
+fn inner<'a>(light: &'a [Stop], eye: &'a [Stop]) -> impl Iterator<Item = &'a Stop> {
+    eye.iter().chain(light.iter().rev())
+}
+
+/// How much less often Russian roulette of the path tracer lets a long path through than that of bidirectional samples:
+/// it begins with the albedo of all vertices instead of one.
+fn roulette_of_walks<'v>(inner: impl Iterator<Item = &'v Stop>) -> f64 {
+    let (mut all, mut last) = (1.0, 1.0);
+    for stop in inner.take(ROULETTE_DEPTH) {
+        last = stop.vertex.bsdf.albedo_bound();
+        all *= last;
+    }
+    all.clamp(0.05, 0.95) / last.clamp(0.05, 0.95)
 }
 
 /// Geometric term G without visibility.

@@ -3,7 +3,7 @@
 
 mod connect;
 
-pub use connect::{Connector, Contribution, MAX_VERTICES, Splat};
+pub use connect::{Connector, Contribution, MAX_VERTICES, Splat, Wanted};
 
 use ajar_render::{
     World,
@@ -100,6 +100,12 @@ impl<'w> Tracer<'w> {
         Self { world, max_depth, light: Subpath::default(), eye: Subpath::default(), connector }
     }
 
+    /// Finds no paths but those that are wanted.
+    pub fn only(mut self, wanted: Wanted<'w>) -> Self {
+        self.connector.wanted = Some(wanted);
+        self
+    }
+
     /// One eye and one light subpath and all their connections that carry light. Contributions are for a film of pixel
     /// measure.
     pub fn sample(
@@ -110,6 +116,7 @@ impl<'w> Tracer<'w> {
         mut visit: impl FnMut(&Found<'_>),
     ) {
         let Self { world, max_depth, light, eye, connector } = self;
+        connector.raster = raster;
         let ray = world.camera.ray(raster, lens);
         eye.trace_eye(world, world.lens_vertex(ray.origin), ray.direction, *max_depth + 1, rng);
         light.trace_light(world, *max_depth, rng);

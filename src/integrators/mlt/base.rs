@@ -8,7 +8,6 @@
 use std::ops::Range;
 
 use ajar_render::{
-    bsdf::{Mode, Side},
     math::{Rgb, scalar},
     path::{ROULETTE_DEPTH, Vertex},
     sampler::Sequence,
@@ -25,9 +24,6 @@ use crate::{
     path::{Found, Visitor, walk},
 };
 
-/// κ: how many times a pixel's brightness one path may add to it.
-const CLAMP: f64 = 2.0;
-
 /// Which part of each path belongs to whom, and who finds seeds for the chains.
 #[derive(Clone, Copy, Debug)]
 pub struct Split<'a> {
@@ -39,16 +35,29 @@ pub struct Split<'a> {
     pub effort: &'a [u32],
     /// Bidirectional samples for each usual eye path: seeds come from both.
     pub beside: f64,
+    /// κ: how many times a pixel's brightness one path may add to it.
+    pub clamp: f64,
 }
 
 /// From how many times its pixel's brightness on a contribution C is heavy: what path tracing seldom finds,
 /// bidirectional samples may find more often.
 const HEAVY: f64 = 8.0;
 
+/// The share of a path that belongs to the chains where the base may add at most `most` at a time.
+pub fn residual(contribution: f64, most: f64) -> f64 {
+    if contribution.is_infinite() { 1.0 } else { contribution / (most + contribution) }
+}
+
 impl Split<'_> {
     /// w_R: the share that belongs to the chains.
-    pub fn residual(contribution: f64, brightness: f64) -> f64 {
-        if contribution.is_infinite() { 1.0 } else { contribution / (CLAMP * brightness + contribution) }
+    fn residual(&self, contribution: f64, brightness: f64) -> f64 {
+        residual(contribution, self.clamp * brightness)
+    }
+
+    /// What a path leaves to the chains: C·w_R/μ. Light seen directly is the base's alone.
+    fn left(&self, path: &Found<'_>, brightness: f64) -> f64 {
+        let c = scalar(path.value);
+        if path.edges == 1 { 0.0 } else { c * self.residual(c, brightness) / brightness }
     }
 
     /// Whether bidirectional samples look for paths of this contribution too.
@@ -56,12 +65,19 @@ impl Split<'_> {
         self.beside > 0.0 && contribution > HEAVY * brightness
     }
 
+    /// Whether bidirectional samples may look for a path at `raster` that is worth `alone` to the path tracer: with some
+    /// room for rounding, for their own share is found from the path.
+    pub fn is_sought_beside(&self, raster: DVec2, alone: f64) -> bool {
+        let Some(pixel) = self.space.pixel(raster) else { return false };
+        self.is_heavy(1.001 * alone, self.brightness[pixel])
+    }
+
     /// What a bidirectional sample of `x`, weighed by f*/p, is worth as a seed.
     pub fn seed_beside(&self, x: &Path) -> f64 {
         let Some(pixel) = self.space.pixel(x.raster) else { return 0.0 };
         let (brightness, contribution) = (self.brightness[pixel], contribution(x));
         let share = 1.0 - self.seeds_of_base(x, contribution, pixel);
-        share * Self::residual(contribution, brightness) / brightness
+        share * self.residual(contribution, brightness) / brightness
     }
 
     /// The part of the seeds at `x` that is left to path tracing, by the balance heuristic; the rest is left to
@@ -100,7 +116,7 @@ fn bidirectional_density(x: &Path) -> f64 {
 impl Target for Split<'_> {
     fn aim(&self, x: &Path) -> Aim {
         let brightness = self.space.pixel(x.raster).map_or(1.0, |pixel| self.brightness[pixel]);
-        let share = Self::residual(contribution(x), brightness);
+        let share = self.residual(contribution(x), brightness);
         Aim { weight: share / brightness, deposit: x.f * (brightness / x.scalar()) }
     }
 }
@@ -167,76 +183,8 @@ pub fn render(
         .collect()
 }
 
-/// What the samples of a pixel see on average.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Glance {
-    /// Brightness, without light seen directly.
-    pub brightness: f64,
-    /// Share of them that something like a mirror or glass sends on.
-    pub sent_on: f64,
-}
-
-#[derive(Default)]
-struct Look {
-    brightness: f64,
-    walked: Vec<Vertex>,
-}
-
-impl Visitor for Look {
-    fn leave(&mut self, vertex: &Vertex) {
-        self.walked.push(*vertex);
-    }
-
-    fn found(&mut self, path: &Found<'_>) {
-        if path.edges > 1 {
-            self.brightness += scalar(path.value);
-        }
-    }
-}
-
-/// Density of a direction from which on a surface counts as a mirror, 1/sr: the highlight of a roughness of about .3.
-const SHARP: f64 = 10.0;
-
-/// Whether the first surface of a walk sends it on much as a mirror or glass would.
-fn is_sent_on(walked: &[Vertex]) -> bool {
-    match walked {
-        [_, first, ..] if first.mode != Mode::Smooth => true,
-        [lens, first, next, ..] => {
-            let [known, new] = [lens, next].map(|end| first.frame.to_local((end.p - first.p).normalize()));
-            first.bsdf.pdf(Side::TowardLight, known, new) > SHARP
-        }
-        _ => false,
-    }
-}
-
-/// What the samples of each pixel see. One pixel speaks for a square of them, `step` on each side.
-pub fn glances(space: &Space<'_>, settings: &Settings, round: u32, step: usize) -> Vec<Glance> {
-    let mean = |pixel| {
-        let mut look = Look::default();
-        let mut sent_on = 0;
-        for sample in settings.samples(round) {
-            look.walked.clear();
-            trace(space, settings.seed, pixel, sample, &mut look);
-            sent_on += usize::from(is_sent_on(&look.walked));
-        }
-        let samples = f64::from(settings.samples_per_round);
-        Glance { brightness: look.brightness / samples, sent_on: sent_on as f64 / samples }
-    };
-    let width = space.window.width() as usize;
-    let columns = width.div_ceil(step);
-    let rows = (space.window.pixels() / width).div_ceil(step);
-    let found: Vec<Glance> = (0..columns * rows)
-        .into_par_iter()
-        .map(|square| (square / columns * width + square % columns) * step)
-        .map(|pixel| if space.cancelled() { Glance::default() } else { mean(pixel) })
-        .collect();
-    (0..space.window.pixels())
-        .map(|pixel| found[pixel / width / step * columns + pixel % width / step])
-        .collect()
-}
-
 /// Runs one sample of a pixel. Returns raster position and lens point.
-fn trace(
+pub fn trace(
     space: &Space<'_>,
     seed: u64,
     pixel: usize,
@@ -285,15 +233,9 @@ impl<'a> Shares<'a> {
     }
 }
 
-/// What a path leaves to the chains: C·w_R/μ. Light seen directly is the base's alone.
-fn left(path: &Found<'_>, brightness: f64) -> f64 {
-    let c = scalar(path.value);
-    if path.edges == 1 { 0.0 } else { c * Split::residual(c, brightness) / brightness }
-}
-
 impl Visitor for Shares<'_> {
     fn found(&mut self, path: &Found<'_>) {
-        let (left, c) = (left(path, self.brightness), scalar(path.value));
+        let (left, c) = (self.split.left(path, self.brightness), scalar(path.value));
         // w_R = left·μ/C, so that what stays is (C − left·μ)/C of the value.
         self.sum += path.value * (1.0 - left * self.brightness / c);
         if left > 0.0 && self.split.is_heavy(c, self.brightness) {
@@ -362,7 +304,7 @@ impl Visitor for Seeds<'_> {
     }
 
     fn found(&mut self, path: &Found<'_>) {
-        let (mut left, c) = (left(path, self.brightness), scalar(path.value));
+        let (mut left, c) = (self.split.left(path, self.brightness), scalar(path.value));
         let is_heavy = self.split.is_heavy(c, self.brightness);
         if self.found || left == 0.0 || !(is_heavy || self.rest.is_finite()) {
             return;

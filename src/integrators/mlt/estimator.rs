@@ -121,11 +121,14 @@ impl Rounds for AjarRounds<'_> {
             space: self.space,
             brightness: &self.plan.brightness,
             effort: &self.plan.effort,
+            clamp: self.plan.clamp,
             beside: f64::from(beside) / samples,
         };
         let left = base::render(&split, settings, round, |pixel, value| film.add(pixel, value));
         let bootstrap = Bootstrap { space: self.space, seed: settings.seed, round, samples: beside };
-        let found = bootstrap.candidates_worth(|x| split.seed_beside(x));
+        let found = bootstrap.candidates_worth(&|raster, alone| split.is_sought_beside(raster, alone), |x| {
+            split.seed_beside(x)
+        });
         if self.cx.cancelled() {
             return;
         }
@@ -163,6 +166,7 @@ impl Rounds for AjarRounds<'_> {
     fn report(&self) -> Report {
         let totals = self.totals.lock().unwrap_or_else(PoisonError::into_inner);
         let mut report = totals.report(self.mutations.iter().map(|m| m.name()));
+        report.numbers.push(("clamp".into(), self.plan.clamp));
         report.numbers.push(("residual".into(), self.plan.residual));
         report.numbers.push(("mutations_per_sample".into(), self.plan.mutations_per_sample));
         report

@@ -5,11 +5,15 @@
 
 use std::ops::Range;
 
-use ajar_render::{film::Film, math::scalar};
+use ajar_render::{
+    film::Film,
+    math::{Rgb, scalar},
+};
 use rayon::prelude::*;
 
 use super::{
-    base::{self, Glance, Split},
+    base,
+    glance::{self, Glance},
     path::{Path, Space},
     plain::{PlainChains, Run},
     target::Aim,
@@ -51,6 +55,9 @@ const MOST_EFFORT: f64 = 12.0;
 const MOST_ADDED: f64 = 0.5;
 /// Even spread makes an eye path worth about this many random ones where paths alone do well.
 const EVENNESS: f64 = 1.5;
+/// What κ may be: where chains render next to everything, more would leave fireflies in the base; where they render
+/// little, more spares them the work.
+const CLAMPS: [f64; 3] = [2.0, 4.0, 8.0];
 /// Bookkeeping of a mutation, in rays.
 const OVERHEAD: f64 = 1.5;
 /// Shares of the work that the base may get beside chains.
@@ -68,6 +75,8 @@ pub struct Plan {
     pub brightness: Vec<f64>,
     /// How many times as many eye paths as usual each pixel gets.
     pub effort: Vec<u32>,
+    /// κ of the base.
+    pub clamp: f64,
     /// Mutations for each eye path.
     pub mutations_per_sample: f64,
     /// Bidirectional samples for each eye path, which look for seeds too.
@@ -91,7 +100,8 @@ pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
     let gain = gain.filter(|gain| pays(gain, 1.0))?;
     let mutations_per_sample = gain.mutations_per_sample();
     let beside = gain.beside(mutations_per_sample);
-    Some(Plan { brightness, effort: effort(&sent_on), mutations_per_sample, beside, residual: gain.residual })
+    let Gain { clamp, residual, .. } = gain;
+    Some(Plan { brightness, effort: effort(&sent_on), clamp, mutations_per_sample, beside, residual })
 }
 
 /// Pixels on each side over which to average `samples` of `pixels`.
@@ -152,7 +162,7 @@ fn seen_by_walks(chains: &PlainChains<'_>) -> (Vec<f64>, Vec<f64>) {
         // Other samples than those of the image, which must not depend on its own brightness.
         let seed = !chains.cx.settings.seed;
         let settings = Settings { seed, samples_per_round: walks, ..chains.cx.settings.clone() };
-        base::glances(space, &settings, half, step)
+        glance::glances(space, &settings, half, step)
     });
     let smoothed = |glances: &[Glance], of: fn(&Glance) -> f64| {
         smooth(&glances.iter().map(of).collect::<Vec<_>>(), space.window.width() as usize, reach)
@@ -187,6 +197,8 @@ fn smooth(values: &[f64], width: usize, reach: usize) -> Vec<f64> {
 /// Relative second moments of one sample, averaged over pixels, and costs in rays.
 #[derive(Clone, Copy, Debug, Default)]
 struct Gain {
+    /// κ of the base.
+    clamp: f64,
     /// Of path tracing alone, and of the base.
     path: f64,
     base: f64,
@@ -204,8 +216,13 @@ impl Gain {
 
     /// Squared error of path tracing alone over that of base and chains, in equal time.
     fn advantage(&self) -> f64 {
+        self.path * self.path_cost * (1.0 - SEED_WORK) / (EVENNESS * self.error())
+    }
+
+    /// Squared error of base and chains times the time that both take.
+    fn error(&self) -> f64 {
         let (base, chains) = self.work();
-        self.path * self.path_cost / (EVENNESS * (base.sqrt() + chains.sqrt()).powi(2))
+        (base.sqrt() + chains.sqrt()).powi(2)
     }
 
     /// Variances times costs of base and chains.
@@ -223,7 +240,7 @@ impl Gain {
 }
 
 /// Chains see paths in proportion to what they contribute: the mean of C/μ over them is the second moment of the path
-/// tracer, however seldom it would find them itself.
+/// tracer, however seldom it would find them itself. Of the values that κ may have the one with the least error.
 fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Option<Gain> {
     let space = &chains.space;
     // Sums are made per pixel and then in order: the order of threads must not show.
@@ -233,28 +250,36 @@ fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Op
     let totals = chains.render(&run, |path, aim, share| {
         let Some(pixel) = space.pixel(path.raster) else { return };
         let brightness = brightness[pixel];
-        let relative = scalar(aim.deposit) * share / brightness;
         let c = base::contribution(path);
-        let left = Split::residual(c, brightness);
-        let moment = |x: f64| ajar_render::math::Rgb::splat(x.min(MOST) * relative);
-        paths.add(pixel, moment(c / brightness));
-        bases.add(pixel, moment((1.0 - left).powi(2) * if c.is_finite() { c / brightness } else { 0.0 }));
-        residuals.add(pixel, moment(left));
+        let left = CLAMPS.map(|clamp| base::residual(c, clamp * brightness));
+        let relative = scalar(aim.deposit) * share / brightness;
+        let moments = |of: [f64; 3]| Rgb::from(of.map(|x| x.min(MOST) * relative));
+        let of_base = |left: f64| if left < 1.0 { (1.0 - left).powi(2) * c / brightness } else { 0.0 };
+        paths.add(pixel, moments([c / brightness; 3]));
+        bases.add(pixel, moments(left.map(of_base)));
+        residuals.add(pixel, moments(left));
     });
+    if totals.stats.steps() == 0 || space.cancelled() {
+        return None;
+    }
     let mean = |round| {
         let mut film = film();
         film.merge(round, 1.0);
-        (0..film.pixels()).map(|pixel| film.mean(pixel).x).sum::<f64>()
+        (0..film.pixels()).map(|pixel| film.mean(pixel)).sum::<Rgb>().to_array()
     };
-    let mean = |round| (!space.cancelled()).then(|| mean(round));
-    let gain = Gain {
-        path: mean(&paths)?,
-        base: mean(&bases)?,
-        residual: mean(&residuals)?,
-        path_cost: path_cost(space, chains.cx.settings.seed),
-        mutation_cost: totals.rays_per_mutation() + OVERHEAD,
-    };
-    (totals.stats.steps() > 0 && !space.cancelled()).then_some(gain)
+    let (path_cost, mutation_cost) =
+        (path_cost(space, chains.cx.settings.seed), totals.rays_per_mutation() + OVERHEAD);
+    let [paths, bases, residuals] = [&paths, &bases, &residuals].map(mean);
+    let gains = (0..CLAMPS.len()).map(|i| Gain {
+        clamp: CLAMPS[i],
+        path: paths[i],
+        base: bases[i],
+        residual: residuals[i],
+        path_cost,
+        mutation_cost,
+    });
+    let best = gains.min_by(|a, b| a.error().total_cmp(&b.error()));
+    best.filter(|_| !space.cancelled())
 }
 
 /// Largest relative contribution that counts in the second moments.

@@ -10,7 +10,7 @@ use ajar_render::{
 use rayon::prelude::*;
 
 use super::path::{Node, Path, Space};
-use crate::bdpt::{Found, Tracer};
+use crate::bdpt::{Found, Tracer, Wanted};
 
 /// A path that a bidirectional sample found; small, since it can be found again.
 #[derive(Clone, Copy, Debug)]
@@ -58,40 +58,45 @@ impl<'w> Bootstrap<'w> {
 
     /// All candidates, in the order of the samples.
     pub fn candidates(&self) -> Vec<Candidate> {
-        self.collect(|| (), |(), candidate, _| Some(candidate))
+        self.collect(|| (self.tracer(), ()), |(), candidate, _| Some(candidate))
     }
 
     /// Those that `weigh` finds worth something, their weights multiplied by what it says of their paths.
-    pub fn candidates_worth(&self, weigh: impl Fn(&Path) -> f64 + Sync) -> Vec<Candidate> {
-        self.collect(Path::with_capacity, |path, candidate, found| {
+    pub fn candidates_worth<'a>(
+        &self,
+        wanted: Wanted<'a>,
+        weigh: impl Fn(&Path) -> f64 + Sync,
+    ) -> Vec<Candidate>
+    where
+        'w: 'a,
+    {
+        let memory = || (self.tracer().only(wanted), Path::with_capacity());
+        self.collect(memory, |path, candidate, found| {
             self.build(path, found)?;
             let weight = candidate.weight * weigh(path);
             (weight > 0.0).then_some(Candidate { weight, ..candidate })
         })
     }
 
-    fn collect<T>(
+    fn collect<'a, T>(
         &self,
-        memory: impl Fn() -> T + Sync + Send,
+        memory: impl Fn() -> (Tracer<'a>, T) + Sync + Send,
         keep: impl Fn(&mut T, Candidate, &Found<'_>) -> Option<Candidate> + Sync,
     ) -> Vec<Candidate> {
         let blocks: Vec<Vec<Candidate>> = (0..self.samples.div_ceil(BLOCK))
             .into_par_iter()
-            .map_init(
-                || (self.tracer(), memory()),
-                |(tracer, memory), block| {
-                    let mut kept = Vec::new();
-                    if self.space.cancelled() {
-                        return kept;
-                    }
-                    for i in block * BLOCK..((block + 1) * BLOCK).min(self.samples) {
-                        self.visit(tracer, i, |found| {
-                            kept.extend(self.candidate(i, found).and_then(|c| keep(memory, c, found)));
-                        });
-                    }
-                    kept
-                },
-            )
+            .map_init(memory, |(tracer, memory), block| {
+                let mut kept = Vec::new();
+                if self.space.cancelled() {
+                    return kept;
+                }
+                for i in block * BLOCK..((block + 1) * BLOCK).min(self.samples) {
+                    self.visit(tracer, i, |found| {
+                        kept.extend(self.candidate(i, found).and_then(|c| keep(memory, c, found)));
+                    });
+                }
+                kept
+            })
             .collect();
         blocks.concat()
     }

@@ -3,7 +3,7 @@
 
 mod common;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use ajar_integrators::mlt::{
     Aux, Mutation, Reject,
@@ -16,6 +16,8 @@ use ajar_integrators::mlt::{
     target::{Aim, Target},
 };
 use ajar_integrators::{
+    Window,
+    bdpt::{self, Tracer},
     mlt::base::contribution,
     path::{Found, Visitor, walk},
 };
@@ -29,7 +31,7 @@ use common::{
     scenes::{IMAGES, SCENES},
     seeds, settings, sized,
 };
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1e-300)
@@ -252,5 +254,54 @@ fn paths_contribute_to_the_base_what_chains_think() {
         println!("{}: {} paths, C differs for {}", scene.name, all.seen, all.off);
         // Directions are found again from points, which are rounded: between neighbours in a corner that shows.
         assert!(all.seen > 0 && all.off * 100 < all.seen, "{}: {} of {}", scene.name, all.off, all.seen);
+    }
+}
+
+/// C of the path that a technique found, unless it is of a single edge or rounding lost it.
+fn contribution_of(space: &Space<'_>, found: &bdpt::Found<'_>, path: &mut Path) -> Option<f64> {
+    path.nodes.clear();
+    found.vertices(|vertex| path.nodes.push(Node::new(vertex)));
+    (path.raster, path.lens) = (found.raster, found.lens);
+    path.measure(space, (0, path.edges()), found.s.checked_sub(1)).ok()?;
+    (path.edges() > 1).then(|| contribution(path))
+}
+
+/// Bidirectional samples that look for no paths but heavy ones find all of those, in a part of the film too, and where
+/// nothing on the way dims light no others.
+#[test]
+fn bidirectional_samples_find_what_is_wanted() {
+    for scene in SCENES.iter().chain([&IMAGES]) {
+        let world = (scene.world)();
+        let window = Window { x1: world.camera.width / 2, ..settings(&world, 3, scene.depth, 1).window };
+        let space = Space::new(&world, window, scene.depth);
+        let tracer = || Tracer::new(&world, scene.depth, 1.0 / space.film_ratio);
+        let sample = |tracer: &mut Tracer<'_>, i, visit: &mut dyn FnMut(&bdpt::Found<'_>)| {
+            let mut rng = Rng::new(3, Purpose::Test, 0, i);
+            let raster = space.raster(rng.pair());
+            tracer.sample(raster, rng.pair(), &mut rng, visit);
+        };
+        let (mut path, mut all) = (Path::with_capacity(), Vec::new());
+        let mut unfiltered = tracer();
+        for i in 0..500 {
+            sample(&mut unfiltered, i, &mut |found| {
+                all.extend(contribution_of(&space, found, &mut path).map(|c| ((i, found.s, found.t), c)));
+            });
+        }
+        all.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let least = all[all.len() / 2].1;
+        let wanted = |_: DVec2, alone: f64| alone > least;
+        let (mut filtered, mut kept) = (tracer().only(&wanted), HashSet::new());
+        for i in 0..500 {
+            sample(&mut filtered, i, &mut |found| {
+                kept.insert((i, found.s, found.t));
+            });
+        }
+        let lost = all.iter().filter(|(id, c)| *c > least * 1.001 && !kept.contains(id)).count();
+        let superfluous = all.iter().filter(|(id, c)| *c < least * 0.999 && kept.contains(id)).count();
+        println!("{}: {} paths, {lost} lost, {superfluous} superfluous", scene.name, all.len());
+        // Directions are found again from points, which are rounded.
+        assert!(lost * 1000 <= all.len(), "{}: {lost} lost", scene.name);
+        let dims = world.has_alpha() || scene.name == "cloth, leaf and pearl";
+        assert!(dims || superfluous * 1000 <= all.len(), "{}: {superfluous} superfluous", scene.name);
     }
 }

@@ -65,7 +65,11 @@ fn under_the_targets_of_the_default_estimator() {
         let pixels = 0..space.window.pixels();
         let brightness: Vec<f64> = pixels.clone().map(|_| 0.2 + rng.f64()).collect();
         let effort: Vec<u32> = pixels.map(|_| 1 + rng.below(4) as u32).collect();
-        check(scene, space, &Split { space, brightness: &brightness, effort: &effort, beside: 0.5 });
+        check(
+            scene,
+            space,
+            &Split { space, brightness: &brightness, effort: &effort, beside: 0.5, clamp: 2.0 },
+        );
         check(scene, space, &Relative { space, brightness: &brightness });
     }
 }

@@ -99,7 +99,7 @@ fn under_the_targets_of_the_default_estimator() {
         let mut rng = Rng::new(3, Purpose::Test, 0, 0);
         let brightness: Vec<f64> = (0..space.window.pixels()).map(|_| 0.2 + rng.f64()).collect();
         let effort: Vec<u32> = (0..space.window.pixels()).map(|_| 1 + rng.below(4) as u32).collect();
-        let split = Split { space, brightness: &brightness, effort: &effort, beside: 0.5 };
+        let split = Split { space, brightness: &brightness, effort: &effort, beside: 0.5, clamp: 2.0 };
         let relative = Relative { space, brightness: &brightness };
         let target: &dyn Target = if residual { &split } else { &relative };
         check_weighed(scene, &world, (&list, &by_class(&usual)), target);
