@@ -20,20 +20,29 @@ use super::{
 };
 use crate::Settings;
 
-/// Mutations of the first look, which spares easy scenes the rest.
-const ROUGH_MUTATIONS: u64 = 1 << 17;
+/// How many mutations a step of the pilot takes.
+struct Count {
+    a_pixel: u64,
+    fewest: u64,
+    most: u64,
+}
+
+impl Count {
+    fn for_pixels(&self, pixels: usize) -> u64 {
+        (self.a_pixel * pixels as u64).clamp(self.fewest, self.most)
+    }
+}
+
+/// The first look, which spares easy scenes the rest.
+const ROUGH: Count = Count { a_pixel: 2, fewest: 1 << 15, most: 1 << 17 };
+/// Those that find the brightness: large images are learned more coarsely.
+const BRIGHTNESS: Count = Count { a_pixel: 16, fewest: 1 << 16, most: 1 << 22 };
+/// Those that find what chains would cost and gain.
+const GAIN: Count = Count { a_pixel: 8, fewest: 1 << 15, most: 1 << 19 };
 /// How much smaller the error of paths alone must be for the first look to decide: it is right within a third.
 const CLEARLY: f64 = 0.7;
-/// Mutations a pixel that find the brightness, and fewest and most of all: large images are learned more coarsely.
-const BRIGHTNESS_MUTATIONS: u64 = 16;
-const FEWEST_MUTATIONS: u64 = 1 << 18;
-const MOST_MUTATIONS: u64 = 1 << 22;
 /// Steps of each chain: they begin where bidirectional samples say, and need not go far from there.
 const LENGTH: u32 = 128;
-/// Mutations that find what chains would cost and gain, a pixel, fewest and most.
-const GAIN_MUTATIONS: u64 = 8;
-const FEWEST_GAIN_MUTATIONS: u64 = 1 << 17;
-const MOST_GAIN_MUTATIONS: u64 = 1 << 19;
 /// Mutations that the square of pixels to average over should hold.
 const AVERAGED: f64 = 300.0;
 /// Eye paths, twice, that look for what the chains missed, and most a pixel.
@@ -88,15 +97,15 @@ pub struct Plan {
 /// Makes the plan; none where path tracing is better alone. `always` asks for chains wherever they find light.
 pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
     let pays = |gain: &Gain, least| always || gain.advantage() > least;
-    let rough = seen_by_chains(chains, None, ROUGH_MUTATIONS);
-    gain_over(chains, &rough, ROUGH_MUTATIONS).filter(|gain| pays(gain, CLEARLY))?;
+    let pixels = chains.space.window.pixels();
+    let rough = seen_by_chains(chains, None, ROUGH.for_pixels(pixels));
+    gain_over(chains, &rough, ROUGH.for_pixels(pixels)).filter(|gain| pays(gain, CLEARLY))?;
     // Chains may have missed what walks find easily. A brightness that is too low costs much, one that is too high
     // little.
-    let chained = seen_by_chains(chains, Some(&rough), mutations(chains));
+    let chained = seen_by_chains(chains, Some(&rough), BRIGHTNESS.for_pixels(pixels));
     let (walked, sent_on) = seen_by_walks(chains);
     let brightness: Vec<f64> = chained.into_iter().zip(walked).map(|(a, b)| a.max(b)).collect();
-    let mutations = GAIN_MUTATIONS * chains.space.window.pixels() as u64;
-    let gain = gain_over(chains, &brightness, mutations.clamp(FEWEST_GAIN_MUTATIONS, MOST_GAIN_MUTATIONS));
+    let gain = gain_over(chains, &brightness, GAIN.for_pixels(pixels));
     let gain = gain.filter(|gain| pays(gain, 1.0))?;
     let mutations_per_sample = gain.mutations_per_sample();
     let beside = gain.beside(mutations_per_sample);
@@ -108,12 +117,6 @@ pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
 fn reach(samples: u64, pixels: usize) -> usize {
     let side = (AVERAGED * pixels as f64 / samples as f64).sqrt();
     ((side - 1.0) / 2.0).ceil().max(0.0) as usize
-}
-
-/// Mutations that find the brightness.
-fn mutations(chains: &PlainChains<'_>) -> u64 {
-    let pixels = chains.space.window.pixels() as u64;
-    (BRIGHTNESS_MUTATIONS * pixels).clamp(FEWEST_MUTATIONS, MOST_MUTATIONS)
 }
 
 /// Brightness of each pixel as so many mutations find it, nowhere 0. Those that visit pixels in proportion to
@@ -155,7 +158,7 @@ fn effort(sent_on: &[f64]) -> Vec<u32> {
 fn seen_by_walks(chains: &PlainChains<'_>) -> (Vec<f64>, Vec<f64>) {
     let space = &chains.space;
     let pixels = space.window.pixels();
-    let reach = reach(mutations(chains), pixels);
+    let reach = reach(BRIGHTNESS.for_pixels(pixels), pixels);
     let step = (pixels as f64 / WALKS as f64).sqrt().ceil().max(1.0) as usize;
     let walks = ((WALKS / pixels) as u32).clamp(1, MOST_WALKS);
     let [a, b] = [0, 1].map(|half| {
