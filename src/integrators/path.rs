@@ -5,7 +5,7 @@ use ajar_render::{
     bsdf::{Mode, Side},
     film::RoundFilm,
     math::Rgb,
-    path::{Edge, ROULETTE_DEPTH, Step, Vertex},
+    path::{Edge, ROULETTE_DEPTH, Step, Vertex, survival},
     sampler::{Sequence, Sobol},
 };
 use glam::{DVec2, DVec3};
@@ -187,7 +187,7 @@ impl Walk<'_> {
         if edges <= ROULETTE_DEPTH {
             self.albedo *= here.bsdf.albedo_bound();
         }
-        if edges == ROULETTE_DEPTH { self.albedo.clamp(0.05, 0.95) } else { here.survival(edges) }
+        if edges == ROULETTE_DEPTH { survival(self.albedo) } else { here.survival(edges) }
     }
 
     /// Leaves `from`, which is yet to become the vertex that it is named after.
@@ -250,6 +250,9 @@ fn next_event_estimate(
         return;
     }
     let mut value = walk.throughput * value * world.absorption(x0, here, &edge) * hidden;
+    if value == Rgb::ZERO {
+        return;
+    }
     if x0.can_be_met() {
         let met = edge.density(scattering.toward_light * survival, here, x0, false);
         value *= density / (density + met * hidden);

@@ -4,7 +4,7 @@ use ajar_render::{
     World,
     bsdf::{Evaluation, Mode},
     math::{Rgb, scalar},
-    path::{Edge, Kind, ROULETTE_DEPTH, Stop, Subpath, Vertex, sweep::Densities},
+    path::{Edge, Kind, ROULETTE_DEPTH, Stop, Subpath, Vertex, survival, sweep::Densities},
 };
 use glam::{DVec2, DVec3};
 
@@ -27,8 +27,8 @@ impl End {
     }
 }
 
-/// Whether a path is wanted, given its raster position and what path tracing alone would make of it, f*/p, if nothing
-/// were in its way.
+/// Whether a path is wanted, given its raster position in pixels and f*/p of path tracing alone: or more, since nobody has
+/// looked yet what dims or stops light along the connection.
 pub type Wanted<'w> = &'w (dyn Fn(DVec2, f64) -> bool + Sync);
 
 /// Arrays of the sweep, kept between connections.
@@ -37,9 +37,9 @@ pub struct Connector<'w> {
     light_fraction: f64,
     /// Which paths are wanted, all if nothing is said. Asked before looking whether something is in the way, which is most
     /// of the work.
-    pub wanted: Option<Wanted<'w>>,
+    pub(super) wanted: Option<Wanted<'w>>,
     /// Raster position of the eye subpath, pixels.
-    pub raster: DVec2,
+    pub(super) raster: DVec2,
     to_eye: [f64; MAX_VERTICES],
     to_light: [f64; MAX_VERTICES],
     connectable: [bool; MAX_VERTICES],
@@ -118,7 +118,7 @@ impl<'w> Connector<'w> {
         let emitted = self.world.emitted(x0, edge.to_eye) * (self.world.coverage(x0) / density);
         let at_eye = end.vertex.evaluate(-edge.to_eye, end.to_previous);
         let value = emitted * end.throughput * at_eye.value * geometry(x0, &end.vertex, &edge);
-        let value = self.seen(value, x0, &end.vertex, &edge);
+        let value = self.visible_unless_filtered(value, x0, &end.vertex, &edge);
         if value == Rgb::ZERO {
             return Contribution::NONE;
         }
@@ -127,7 +127,7 @@ impl<'w> Connector<'w> {
         self.to_eye[0] = self.emission_density(x0, &end.vertex, &edge);
         self.join_eye(eye, &end, &at_eye, x0, &edge, (1, t));
         let found = self.weigh(value, x0, (1, t), inner(&[], &eye.stops[1..t]));
-        self.looked_for(found, self.raster, x0, &end.vertex, &edge)
+        self.visible_if_wanted(found, self.raster, x0, &end.vertex, &edge)
     }
 
     /// Technique s ≥ 2, t ≥ 2.
@@ -145,7 +145,7 @@ impl<'w> Connector<'w> {
         let at_eye = e.vertex.evaluate(-edge.to_eye, e.to_previous);
         let scattered = l.throughput * at_light.value * at_eye.value * e.throughput;
         let value = scattered * geometry(&l.vertex, &e.vertex, &edge);
-        let value = self.seen(value, &l.vertex, &e.vertex, &edge);
+        let value = self.visible_unless_filtered(value, &l.vertex, &e.vertex, &edge);
         if value == Rgb::ZERO {
             return Contribution::NONE;
         }
@@ -155,7 +155,7 @@ impl<'w> Connector<'w> {
         self.join_eye(eye, &e, &at_eye, &l.vertex, &edge, (s, t));
         let between = inner(&light.stops[1..s], &eye.stops[1..t]);
         let found = self.weigh(value, &light.stops[0].vertex, (s, t), between);
-        self.looked_for(found, self.raster, &l.vertex, &e.vertex, &edge)
+        self.visible_if_wanted(found, self.raster, &l.vertex, &e.vertex, &edge)
     }
 
     /// Technique t = 1: the light subpath's `s`-th vertex, s ≥ 2, seen through the lens point `lens`.
@@ -167,7 +167,7 @@ impl<'w> Connector<'w> {
         let scattering = end.vertex.evaluate(end.to_previous, seen.direction);
         let value =
             end.throughput * scattering.value * (end.vertex.projected(seen.direction) * seen.importance);
-        let value = self.seen(value, &end.vertex, &lens, &edge);
+        let value = self.visible_unless_filtered(value, &end.vertex, &lens, &edge);
         if value == Rgb::ZERO {
             return None;
         }
@@ -177,12 +177,12 @@ impl<'w> Connector<'w> {
         self.to_light[k] = seen.importance * end.vertex.projected(seen.direction);
         self.join_light(light, &end, &scattering, &lens, &edge, (s, 1));
         let found = self.weigh(value, &light.stops[0].vertex, (s, 1), inner(&light.stops[1..s], &[]));
-        let found = self.looked_for(found, seen.raster, &end.vertex, &lens, &edge);
+        let found = self.visible_if_wanted(found, seen.raster, &end.vertex, &lens, &edge);
         Some(Splat { raster: seen.raster, lens, found })
     }
 
     /// `value` times what of it crosses the edge, unless that is looked for later; no ray is cast for nothing.
-    fn seen(&self, value: Rgb, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
+    fn visible_unless_filtered(&self, value: Rgb, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
         let later = value == Rgb::ZERO || self.wanted.is_some();
         if later { value } else { value * self.world.transmittance(light, eye, edge) }
     }
@@ -192,7 +192,7 @@ impl<'w> Connector<'w> {
     }
 
     /// What of `found` crosses the edge, if it is wanted and nobody has looked yet.
-    fn looked_for(
+    fn visible_if_wanted(
         &self,
         found: Weighed,
         raster: DVec2,
@@ -292,6 +292,8 @@ impl<'w> Connector<'w> {
         };
         // Technique s walks on at x_{s+1}, and so survives roulette there.
         let fewer = if self.wanted.is_some() { roulette_of_walks(inner) } else { 1.0 };
+        // Sampled light ends carry their coverage; f, of which path tracing's share is a part, does not.
+        let covered = if s > 0 { self.world.coverage(x0) } else { 1.0 };
         let (mut all, mut by_eye) = (0.0, 0.0);
         densities.for_each_ratio(s, |s, ratio| {
             all += ratio;
@@ -302,7 +304,10 @@ impl<'w> Connector<'w> {
         if t == 1 {
             by_eye *= self.light_fraction;
         }
-        Weighed { contribution: Contribution { value, weight: 1.0 / all }, alone: scalar(value) / by_eye }
+        Weighed {
+            contribution: Contribution { value, weight: 1.0 / all },
+            alone: scalar(value) / (by_eye * covered),
+        }
     }
 }
 
@@ -326,7 +331,7 @@ fn roulette_of_walks<'v>(inner: impl Iterator<Item = &'v Stop>) -> f64 {
         last = stop.vertex.bsdf.albedo_bound();
         all *= last;
     }
-    all.clamp(0.05, 0.95) / last.clamp(0.05, 0.95)
+    survival(all) / survival(last)
 }
 
 /// Geometric term G without visibility.

@@ -100,7 +100,7 @@ impl<'w> Tracer<'w> {
         Self { world, max_depth, light: Subpath::default(), eye: Subpath::default(), connector }
     }
 
-    /// Finds no paths but those that are wanted.
+    /// Finds no paths but those that are wanted, and light seen directly.
     pub fn only(mut self, wanted: Wanted<'w>) -> Self {
         self.connector.wanted = Some(wanted);
         self

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use ajar_render::{
     math::{Rgb, scalar},
-    path::{ROULETTE_DEPTH, Vertex},
+    path::{ROULETTE_DEPTH, Vertex, survival},
     sampler::Sequence,
 };
 use glam::DVec2;
@@ -42,22 +42,24 @@ pub struct Split<'a> {
 /// From how many times its pixel's brightness on a contribution C is heavy: what path tracing seldom finds,
 /// bidirectional samples may find more often.
 const HEAVY: f64 = 8.0;
+/// Room for rounding where C is known before the path is built.
+const ROOM: f64 = 1.05;
 
-/// The share of a path that belongs to the chains where the base may add at most `most` at a time.
-pub fn residual(contribution: f64, most: f64) -> f64 {
+/// w_R: the share of a path with contribution C that belongs to the chains where the base may add at most `most` = κμ.
+pub fn share_of_chains(contribution: f64, most: f64) -> f64 {
     if contribution.is_infinite() { 1.0 } else { contribution / (most + contribution) }
 }
 
 impl Split<'_> {
-    /// w_R: the share that belongs to the chains.
-    fn residual(&self, contribution: f64, brightness: f64) -> f64 {
-        residual(contribution, self.clamp * brightness)
+    /// w_R.
+    fn share_of_chains(&self, contribution: f64, brightness: f64) -> f64 {
+        share_of_chains(contribution, self.clamp * brightness)
     }
 
     /// What a path leaves to the chains: C·w_R/μ. Light seen directly is the base's alone.
     fn left(&self, path: &Found<'_>, brightness: f64) -> f64 {
         let c = scalar(path.value);
-        if path.edges == 1 { 0.0 } else { c * self.residual(c, brightness) / brightness }
+        if path.edges == 1 { 0.0 } else { c * self.share_of_chains(c, brightness) / brightness }
     }
 
     /// Whether bidirectional samples look for paths of this contribution too.
@@ -65,11 +67,11 @@ impl Split<'_> {
         self.beside > 0.0 && contribution > HEAVY * brightness
     }
 
-    /// Whether bidirectional samples may look for a path at `raster` that is worth `alone` to the path tracer: with some
-    /// room for rounding, for their own share is found from the path.
+    /// Whether bidirectional samples may look for a path at `raster` (pixels) that is worth `alone` to the path tracer. What
+    /// they are then worth as seeds is found from the paths themselves.
     pub fn is_sought_beside(&self, raster: DVec2, alone: f64) -> bool {
         let Some(pixel) = self.space.pixel(raster) else { return false };
-        self.is_heavy(1.001 * alone, self.brightness[pixel])
+        self.is_heavy(ROOM * alone, self.brightness[pixel])
     }
 
     /// What a bidirectional sample of `x`, weighed by f*/p, is worth as a seed.
@@ -77,7 +79,7 @@ impl Split<'_> {
         let Some(pixel) = self.space.pixel(x.raster) else { return 0.0 };
         let (brightness, contribution) = (self.brightness[pixel], contribution(x));
         let share = 1.0 - self.seeds_of_base(x, contribution, pixel);
-        share * self.residual(contribution, brightness) / brightness
+        share * self.share_of_chains(contribution, brightness) / brightness
     }
 
     /// The part of the seeds at `x` that is left to path tracing, by the balance heuristic; the rest is left to
@@ -100,14 +102,14 @@ impl Split<'_> {
 /// Total density of the techniques of bidirectional path tracing, their Russian roulette included.
 fn bidirectional_density(x: &Path) -> f64 {
     let k = x.edges();
-    let survival = |i: usize, edges: usize| {
-        if edges < ROULETTE_DEPTH || i == 0 || i == k { 1.0 } else { x.nodes[i].albedo.clamp(0.05, 0.95) }
+    let survives = |i: usize, edges: usize| {
+        if edges < ROULETTE_DEPTH || i == 0 || i == k { 1.0 } else { survival(x.nodes[i].albedo) }
     };
     // Technique s: the walk from the light survives at x_1 … x_{s-2}, that from the eye at x_{s+1} … x_{k-1}.
     let mut sum = 0.0;
     x.splits(0, k + 1, |s, density| {
-        let light: f64 = (1..s.saturating_sub(1)).map(|i| survival(i, i)).product();
-        let eye: f64 = (s + 1..k).map(|i| survival(i, k - i)).product();
+        let light: f64 = (1..s.saturating_sub(1)).map(|i| survives(i, i)).product();
+        let eye: f64 = (s + 1..k).map(|i| survives(i, k - i)).product();
         sum += density * light * eye;
     });
     sum
@@ -116,7 +118,7 @@ fn bidirectional_density(x: &Path) -> f64 {
 impl Target for Split<'_> {
     fn aim(&self, x: &Path) -> Aim {
         let brightness = self.space.pixel(x.raster).map_or(1.0, |pixel| self.brightness[pixel]);
-        let share = self.residual(contribution(x), brightness);
+        let share = self.share_of_chains(contribution(x), brightness);
         Aim { weight: share / brightness, deposit: x.f * (brightness / x.scalar()) }
     }
 }
@@ -126,27 +128,27 @@ pub fn contribution(x: &Path) -> f64 {
     let k = x.edges();
     let (mut density, mut walk_albedo) = (1.0, 1.0);
     // Probability to survive roulette at x_i, as the walk of the path tracer has it.
-    let mut survival = |i: usize| {
+    let mut survives = |i: usize| {
         let (edges, albedo) = (k - i, x.nodes[i].albedo);
         if edges <= ROULETTE_DEPTH {
             walk_albedo *= albedo;
         }
         match edges {
             0 => 1.0,
-            ROULETTE_DEPTH => f64::clamp(walk_albedo, 0.05, 0.95),
+            ROULETTE_DEPTH => survival(walk_albedo),
             _ if edges < ROULETTE_DEPTH => 1.0,
-            _ => albedo.clamp(0.05, 0.95),
+            _ => survival(albedo),
         }
     };
     for i in (2..=k).rev() {
-        density *= x.nodes[i].to_light * if i < k { survival(i) } else { 1.0 };
+        density *= x.nodes[i].to_light * if i < k { survives(i) } else { 1.0 };
     }
     let mut both = 0.0;
     if x.connectable(1) {
         both += density * x.light / x.nodes[0].passed;
     }
     if x.nodes[0].vertex.can_be_met() {
-        both += density * x.nodes[1].to_light * survival(1);
+        both += density * x.nodes[1].to_light * survives(1);
     }
     x.scalar() / both
 }

@@ -6,7 +6,7 @@ pub mod chains;
 pub mod choice;
 mod direct;
 mod estimator;
-mod glance;
+mod first_look;
 pub mod lens_subpaths;
 pub mod manifold;
 pub mod mutation;

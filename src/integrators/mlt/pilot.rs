@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::{
     base,
-    glance::{self, Glance},
+    first_look::{self, Glance},
     path::{Path, Space},
     plain::{PlainChains, Run},
     target::Aim,
@@ -21,24 +21,24 @@ use super::{
 use crate::Settings;
 
 /// How many mutations a step of the pilot takes.
-struct Count {
+struct Mutations {
     a_pixel: u64,
     fewest: u64,
     most: u64,
 }
 
-impl Count {
+impl Mutations {
     fn for_pixels(&self, pixels: usize) -> u64 {
         (self.a_pixel * pixels as u64).clamp(self.fewest, self.most)
     }
 }
 
 /// The first look, which spares easy scenes the rest.
-const ROUGH: Count = Count { a_pixel: 2, fewest: 1 << 15, most: 1 << 17 };
+const ROUGH: Mutations = Mutations { a_pixel: 2, fewest: 1 << 15, most: 1 << 17 };
 /// Those that find the brightness: large images are learned more coarsely.
-const BRIGHTNESS: Count = Count { a_pixel: 16, fewest: 1 << 16, most: 1 << 22 };
+const BRIGHTNESS: Mutations = Mutations { a_pixel: 16, fewest: 1 << 16, most: 1 << 22 };
 /// Those that find what chains would cost and gain.
-const GAIN: Count = Count { a_pixel: 8, fewest: 1 << 15, most: 1 << 19 };
+const GAIN: Mutations = Mutations { a_pixel: 8, fewest: 1 << 15, most: 1 << 19 };
 /// How much smaller the error of paths alone must be for the first look to decide: it is right within a third.
 const CLEARLY: f64 = 0.7;
 /// Steps of each chain: they begin where bidirectional samples say, and need not go far from there.
@@ -72,10 +72,10 @@ const OVERHEAD: f64 = 1.5;
 /// Shares of the work that the base may get beside chains.
 const BASE_SHARE: [f64; 2] = [0.3, 0.7];
 
-/// Share of the work that looks for seeds besides the base.
-const SEED_WORK: f64 = 0.3;
-/// What a bidirectional sample, its paths measured, costs in eye paths.
-const BIDIRECTIONAL_COST: f64 = 8.0;
+/// What looks for seeds besides the base, relative to the work of base and chains.
+const SEED_WORK: f64 = 0.11;
+/// What a bidirectional sample that looks for heavy paths costs in eye paths.
+const BIDIRECTIONAL_COST: f64 = 3.0;
 
 /// What the pilot found.
 #[derive(Clone, Debug)]
@@ -165,7 +165,7 @@ fn seen_by_walks(chains: &PlainChains<'_>) -> (Vec<f64>, Vec<f64>) {
         // Other samples than those of the image, which must not depend on its own brightness.
         let seed = !chains.cx.settings.seed;
         let settings = Settings { seed, samples_per_round: walks, ..chains.cx.settings.clone() };
-        glance::glances(space, &settings, half, step)
+        first_look::glances(space, &settings, half, step)
     });
     let smoothed = |glances: &[Glance], of: fn(&Glance) -> f64| {
         smooth(&glances.iter().map(of).collect::<Vec<_>>(), space.window.width() as usize, reach)
@@ -197,21 +197,22 @@ fn smooth(values: &[f64], width: usize, reach: usize) -> Vec<f64> {
     (0..height).into_par_iter().flat_map_iter(down).collect()
 }
 
-/// Relative second moments of one sample, averaged over pixels, and costs in rays.
+/// Relative second moments of one sample, averaged over pixels, what is left to chains, and costs in rays.
 #[derive(Clone, Copy, Debug, Default)]
 struct Gain {
     /// κ of the base.
     clamp: f64,
-    /// Of path tracing alone, and of the base.
+    /// Second moments of path tracing alone, and of the base.
     path: f64,
     base: f64,
+    /// Mean of what is left to chains.
     residual: f64,
     path_cost: f64,
     mutation_cost: f64,
 }
 
 impl Gain {
-    /// Bidirectional samples for each eye path that take the share [`SEED_WORK`] of the work.
+    /// Bidirectional samples for each eye path that add [`SEED_WORK`] to the work.
     fn beside(&self, mutations_per_sample: f64) -> f64 {
         let work = self.path_cost + mutations_per_sample * self.mutation_cost;
         SEED_WORK * work / (BIDIRECTIONAL_COST * self.path_cost)
@@ -219,13 +220,25 @@ impl Gain {
 
     /// Squared error of path tracing alone over that of base and chains, in equal time.
     fn advantage(&self) -> f64 {
-        self.path * self.path_cost * (1.0 - SEED_WORK) / (EVENNESS * self.error())
+        self.path * self.path_cost / (EVENNESS * self.error() * (1.0 + SEED_WORK))
     }
 
     /// Squared error of base and chains times the time that both take.
     fn error(&self) -> f64 {
+        let ((base, chains), share) = (self.work(), self.share());
+        base / share + chains / (1.0 - share)
+    }
+
+    /// Share of the base in the time. Minimizes σ²_B/t_B + σ²_M/t_M: times in proportion to the standard deviations, within
+    /// bounds.
+    fn share(&self) -> f64 {
         let (base, chains) = self.work();
-        (base.sqrt() + chains.sqrt()).powi(2)
+        let [least, most] = BASE_SHARE;
+        if base + chains > 0.0 {
+            (base.sqrt() / (base.sqrt() + chains.sqrt())).clamp(least, most)
+        } else {
+            most
+        }
     }
 
     /// Variances times costs of base and chains.
@@ -233,11 +246,9 @@ impl Gain {
         (self.base * self.path_cost, self.residual.powi(2) * CORRELATION * self.mutation_cost)
     }
 
-    /// Minimizes σ²_B/t_B + σ²_M/t_M: times in proportion to the standard deviations, within bounds.
+    /// Mutations for each eye path.
     fn mutations_per_sample(&self) -> f64 {
-        let (base, chains) = self.work();
-        let [least, most] = BASE_SHARE;
-        let share = (base.sqrt() / (base.sqrt() + chains.sqrt())).clamp(least, most);
+        let share = self.share();
         (1.0 - share) / share * self.path_cost / self.mutation_cost
     }
 }
@@ -254,7 +265,8 @@ fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Op
         let Some(pixel) = space.pixel(path.raster) else { return };
         let brightness = brightness[pixel];
         let c = base::contribution(path);
-        let left = CLAMPS.map(|clamp| base::residual(c, clamp * brightness));
+        // The channels of these films are the values of κ.
+        let left = CLAMPS.map(|clamp| base::share_of_chains(c, clamp * brightness));
         let relative = scalar(aim.deposit) * share / brightness;
         let moments = |of: [f64; 3]| Rgb::from(of.map(|x| x.min(MOST) * relative));
         let of_base = |left: f64| if left < 1.0 { (1.0 - left).powi(2) * c / brightness } else { 0.0 };

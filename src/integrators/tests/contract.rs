@@ -3,7 +3,10 @@
 
 mod common;
 
-use std::collections::{BTreeMap, HashSet};
+use std::{
+    collections::{BTreeMap, HashSet},
+    sync::atomic::{AtomicU64, Ordering},
+};
 
 use ajar_integrators::mlt::{
     Aux, Mutation, Reject,
@@ -266,42 +269,47 @@ fn contribution_of(space: &Space<'_>, found: &bdpt::Found<'_>, path: &mut Path) 
     (path.edges() > 1).then(|| contribution(path))
 }
 
-/// Bidirectional samples that look for no paths but heavy ones find all of those, in a part of the film too, and where
-/// nothing on the way dims light no others.
+/// A filter of bidirectional samples is asked with the C of the very path, in a part of the film too, or with more where
+/// something may dim the connection; and nothing else is filtered.
 #[test]
 fn bidirectional_samples_find_what_is_wanted() {
     for scene in SCENES.iter().chain([&IMAGES]) {
         let world = (scene.world)();
         let window = Window { x1: world.camera.width / 2, ..settings(&world, 3, scene.depth, 1).window };
         let space = Space::new(&world, window, scene.depth);
-        let tracer = || Tracer::new(&world, scene.depth, 1.0 / space.film_ratio);
-        let sample = |tracer: &mut Tracer<'_>, i, visit: &mut dyn FnMut(&bdpt::Found<'_>)| {
-            let mut rng = Rng::new(3, Purpose::Test, 0, i);
-            let raster = space.raster(rng.pair());
-            tracer.sample(raster, rng.pair(), &mut rng, visit);
+        let sample = |wanted: bdpt::Wanted<'_>, visit: &mut dyn FnMut(u64, &bdpt::Found<'_>)| {
+            let mut tracer = Tracer::new(&world, scene.depth, 1.0 / space.film_ratio).only(wanted);
+            for i in 0..500 {
+                let mut rng = Rng::new(3, Purpose::Test, 0, i);
+                let raster = space.raster(rng.pair());
+                tracer.sample(raster, rng.pair(), &mut rng, |found| visit(i, found));
+            }
+        };
+        let asked = AtomicU64::new(0);
+        let all_wanted = |_: DVec2, alone: f64| {
+            asked.store(alone.to_bits(), Ordering::Relaxed);
+            true
         };
         let (mut path, mut all) = (Path::with_capacity(), Vec::new());
-        let mut unfiltered = tracer();
-        for i in 0..500 {
-            sample(&mut unfiltered, i, &mut |found| {
-                all.extend(contribution_of(&space, found, &mut path).map(|c| ((i, found.s, found.t), c)));
-            });
-        }
-        all.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let least = all[all.len() / 2].1;
-        let wanted = |_: DVec2, alone: f64| alone > least;
-        let (mut filtered, mut kept) = (tracer().only(&wanted), HashSet::new());
-        for i in 0..500 {
-            sample(&mut filtered, i, &mut |found| {
-                kept.insert((i, found.s, found.t));
-            });
-        }
-        let lost = all.iter().filter(|(id, c)| *c > least * 1.001 && !kept.contains(id)).count();
-        let superfluous = all.iter().filter(|(id, c)| *c < least * 0.999 && kept.contains(id)).count();
-        println!("{}: {} paths, {lost} lost, {superfluous} superfluous", scene.name, all.len());
+        let (mut less, mut more) = (0, 0);
+        sample(&all_wanted, &mut |i, found| {
+            let Some(c) = contribution_of(&space, found, &mut path) else { return };
+            let alone = f64::from_bits(asked.load(Ordering::Relaxed));
+            less += usize::from(alone < 0.96 * c);
+            more += usize::from(alone > 1.05 * c);
+            all.push(((i, found.s, found.t), alone));
+        });
+        println!("{}: {} paths, {less} less, {more} more", scene.name, all.len());
         // Directions are found again from points, which are rounded.
-        assert!(lost * 1000 <= all.len(), "{}: {lost} lost", scene.name);
+        assert!(less * 1000 <= all.len(), "{}: {less} of {}", scene.name, all.len());
         let dims = world.has_alpha() || scene.name == "cloth, leaf and pearl";
-        assert!(dims || superfluous * 1000 <= all.len(), "{}: {superfluous} superfluous", scene.name);
+        assert!(dims || more * 1000 <= all.len(), "{}: {more} of {}", scene.name, all.len());
+
+        let wanted = |_: DVec2, alone: f64| alone > 0.1;
+        let mut kept = HashSet::new();
+        sample(&wanted, &mut |i, found| {
+            kept.insert((i, found.s, found.t));
+        });
+        assert!(all.iter().all(|(id, alone)| kept.contains(id) == (*alone > 0.1)), "{}", scene.name);
     }
 }

@@ -11,6 +11,6 @@ pub mod sweep;
 mod vertex;
 
 pub use edge::Edge;
-pub use scatter::{ROULETTE_DEPTH, Step, oriented};
+pub use scatter::{ROULETTE_DEPTH, Step, oriented, survival};
 pub use subpath::{Stop, Subpath};
 pub use vertex::{DiracStep, Kind, MIN_COSINE, Site, Vertex};

@@ -61,8 +61,14 @@ impl Vertex {
     /// is part of every density (design notes, evidence 10: the largest albedo of the material here).
     #[inline]
     pub fn survival(&self, edges: usize) -> f64 {
-        if edges < ROULETTE_DEPTH { 1.0 } else { self.bsdf.albedo_bound().clamp(0.05, 0.95) }
+        if edges < ROULETTE_DEPTH { 1.0 } else { survival(self.bsdf.albedo_bound()) }
     }
+}
+
+/// Probability that a walk survives Russian roulette that goes by `albedo`.
+#[inline]
+pub fn survival(albedo: f64) -> f64 {
+    albedo.clamp(0.05, 0.95)
 }
 
 /// (towards the light, towards the eye) for a walk that came from `known` and goes to `new`.

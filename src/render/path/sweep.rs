@@ -68,13 +68,6 @@ impl Densities<'_> {
     fn generated_by_light(&self, s: usize) -> f64 {
         if s == 1 { self.light } else { self.to_eye[s - 2] }
     }
-
-    /// Weight of technique `s`, which built the path, by the balance heuristic.
-    pub fn balance_weight(&self, s: usize) -> f64 {
-        let mut sum = 0.0;
-        self.for_each_ratio(s, |_, ratio| sum += ratio);
-        1.0 / sum
-    }
 }
 
 #[cfg(test)]
@@ -115,11 +108,18 @@ mod tests {
         }
     }
 
+    /// By the balance heuristic.
+    fn weight(d: &Densities<'_>, s: usize) -> f64 {
+        let mut sum = 0.0;
+        d.for_each_ratio(s, |_, ratio| sum += ratio);
+        1.0 / sum
+    }
+
     #[test]
     fn weights_sum_to_one() {
         for connectable in [[true; 5], [true, false, true, true, true], [true, true, false, true, true]] {
             let d = densities(&connectable);
-            let sum: f64 = (0..=4).filter(|&s| d.possible(s)).map(|s| d.balance_weight(s)).sum();
+            let sum: f64 = (0..=4).filter(|&s| d.possible(s)).map(|s| weight(&d, s)).sum();
             assert!((sum - 1.0).abs() < 1e-12);
         }
     }

@@ -219,7 +219,13 @@ fn partial_opacity() -> World {
         ..diffuse(Vec3::new(0.2, 0.6, 0.6))
     });
     b.mesh(shapes::quad(Vec3::new(-0.8, 0.3, -0.6), Vec3::X * 1.6, Vec3::Z * 1.4), veil);
-    b.mesh(shapes::quad(Vec3::new(-0.8, -0.9, 0.3), Vec3::X * 0.9, Vec3::Y * 0.9), veil);
+    let glowing = b.material(Material {
+        opacity: Input::constant(0.4),
+        alpha_mode: AlphaMode::Blend,
+        emission: Input::constant(Vec3::new(0.5, 0.9, 0.4)),
+        ..diffuse(Vec3::new(0.2, 0.6, 0.6))
+    });
+    b.mesh(shapes::quad(Vec3::new(-0.8, -0.9, 0.3), Vec3::X * 0.9, Vec3::Y * 0.9), glowing);
     b.world(32)
 }
 
