@@ -290,10 +290,11 @@ impl<'w> Connector<'w> {
             light_can_be_hit: x0.can_be_met(),
             light_fraction: self.light_fraction,
         };
-        // Technique s walks on at x_{s+1}, and so survives roulette there.
-        let fewer = if self.wanted.is_some() { roulette_of_walks(inner) } else { 1.0 };
+        // Technique s walks on at x_{s+1}, and so survives roulette there; short paths know none.
+        let asked = self.wanted.is_some();
+        let fewer = if asked && k > ROULETTE_DEPTH { roulette_of_walks(inner) } else { 1.0 };
         // Sampled light ends carry their coverage; f, of which path tracing's share is a part, does not.
-        let covered = if s > 0 { self.world.coverage(x0) } else { 1.0 };
+        let covered = if asked && s > 0 { self.world.coverage(x0) } else { 1.0 };
         let (mut all, mut by_eye) = (0.0, 0.0);
         densities.for_each_ratio(s, |s, ratio| {
             all += ratio;
