@@ -36,13 +36,13 @@ struct Group {
 }
 
 impl<'a> Chains<'a> {
-    /// Runs `count` chains. `find_seed` builds the first path of each; `record` takes paths, what they aim at and the steps
-    /// that they stand for.
+    /// Runs `count` chains. `find_seed` builds the first path of each; `record` takes the chain's index, paths, what they aim
+    /// at and the steps that they stand for.
     pub fn run(
         &self,
         count: usize,
         find_seed: impl Fn(usize, &mut Tracer<'a>, &mut Path) -> Option<()> + Sync,
-        record: impl Fn(&Path, &Aim, f64) + Sync,
+        record: impl Fn(usize, &Path, &Aim, f64) + Sync,
     ) -> Totals {
         let space = &self.kernel.space;
         let tracer = || Tracer::new(space.world, space.max_depth, 1.0 / space.film_ratio);
@@ -71,7 +71,7 @@ impl<'a> Chains<'a> {
                         }
                         find_seed(index, tracer, path)?;
                         chain.start(path, stream(index));
-                        chain.run(self.length, &record);
+                        chain.run(self.length, |path, aim, steps| record(index, path, aim, steps));
                         Some(std::mem::take(&mut chain.stats))
                     };
                     let stats = (group..count).step_by(groups).map(run).collect();

@@ -154,7 +154,7 @@ impl Rounds for AjarRounds<'_> {
                 Seed::Base(pixel, rest) => base::replay(&split, settings, round, (pixel, rest), path),
                 Seed::Bidirectional(candidate) => bootstrap.replay(&candidate, tracer, path),
             },
-            |path, aim, steps| {
+            |_, path, aim, steps| {
                 if let Some(pixel) = self.space.pixel(path.raster) {
                     film.add(pixel, aim.deposit * (steps * step));
                 }

@@ -17,6 +17,7 @@ mod pilot;
 pub mod plain;
 pub mod proposal;
 pub mod seeds;
+mod smooth;
 pub mod stats;
 pub mod target;
 

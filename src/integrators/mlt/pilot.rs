@@ -3,8 +3,6 @@
 //! All of it is a function of world, settings and seed, and stays as it is for all rounds: then any part of the rounds
 //! can be rendered anywhere, and each is unbiased.
 
-use std::ops::Range;
-
 use ajar_render::{
     film::Film,
     math::{Rgb, scalar},
@@ -16,6 +14,8 @@ use super::{
     first_look::{self, Glance},
     path::{Path, Space},
     plain::{PlainChains, Run},
+    seeds::Candidate,
+    smooth::Surfaces,
     target::Aim,
 };
 use crate::Settings;
@@ -43,6 +43,8 @@ const GAIN: Mutations = Mutations { a_pixel: 8, fewest: 1 << 15, most: 1 << 19 }
 const CLEARLY: f64 = 0.7;
 /// Steps of each chain: they begin where bidirectional samples say, and need not go far from there.
 const LENGTH: u32 = 128;
+/// Parts of the chains of which each finds the brightness by itself.
+const PARTS: usize = 4;
 /// Mutations that the square of pixels to average over should hold.
 const AVERAGED: f64 = 300.0;
 /// Eye paths, twice, that look for what the chains missed, and most a pixel.
@@ -98,12 +100,13 @@ pub struct Plan {
 pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
     let pays = |gain: &Gain, least| always || gain.advantage() > least;
     let pixels = chains.space.window.pixels();
-    let rough = seen_by_chains(chains, None, ROUGH.for_pixels(pixels));
+    let surfaces = Surfaces::new(&chains.space);
+    let rough = seen_by_chains(chains, &surfaces, None, ROUGH.for_pixels(pixels));
     gain_over(chains, &rough, ROUGH.for_pixels(pixels)).filter(|gain| pays(gain, CLEARLY))?;
     // Chains may have missed what walks find easily. A brightness that is too low costs much, one that is too high
     // little.
-    let chained = seen_by_chains(chains, Some(&rough), BRIGHTNESS.for_pixels(pixels));
-    let (walked, sent_on) = seen_by_walks(chains);
+    let chained = seen_by_chains(chains, &surfaces, Some(&rough), BRIGHTNESS.for_pixels(pixels));
+    let (walked, sent_on) = seen_by_walks(chains, &surfaces);
     let brightness: Vec<f64> = chained.into_iter().zip(walked).map(|(a, b)| a.max(b)).collect();
     let gain = gain_over(chains, &brightness, GAIN.for_pixels(pixels));
     let gain = gain.filter(|gain| pays(gain, 1.0))?;
@@ -120,15 +123,21 @@ fn reach(samples: u64, pixels: usize) -> usize {
 }
 
 /// Brightness of each pixel as so many mutations find it, nowhere 0. Those that visit pixels in proportion to
-/// their brightness learn little of dark ones; they do better relative to what is known `before`.
-fn seen_by_chains(chains: &PlainChains<'_>, before: Option<&[f64]>, mutations: u64) -> Vec<f64> {
+/// their brightness learn little of dark ones; they do better relative to what is known `before`. A chain that stays long at
+/// a place has a say in one of several parts only, whose mean is geometric.
+fn seen_by_chains(
+    chains: &PlainChains<'_>,
+    surfaces: &Surfaces,
+    before: Option<&[f64]>,
+    mutations: u64,
+) -> Vec<f64> {
     let space = &chains.space;
     let pixels = space.window.pixels();
-    let mut film = Film::new(pixels, crate::brightness(space.world, space.max_depth));
-    let round = film.round();
-    let record = |path: &Path, aim: &Aim, share: f64| {
+    let film = || Film::new(pixels, crate::brightness(space.world, space.max_depth));
+    let parts = [(); PARTS].map(|()| film().round());
+    let record = |start: &Candidate, path: &Path, aim: &Aim, share: f64| {
         if let Some(pixel) = space.pixel(path.raster) {
-            round.add(pixel, aim.deposit * (share * pixels as f64));
+            parts[start.sample as usize % PARTS].add(pixel, aim.deposit * (share * (PARTS * pixels) as f64));
         }
     };
     let number = if before.is_some() { BRIGHTNESS_ROUND } else { ROUGH_ROUND };
@@ -136,14 +145,18 @@ fn seen_by_chains(chains: &PlainChains<'_>, before: Option<&[f64]>, mutations: u
     if space.cancelled() {
         return vec![1.0; pixels];
     }
-    film.merge(&round, 1.0);
-    let found: Vec<f64> = (0..pixels).map(|pixel| scalar(film.mean(pixel))).collect();
-    let mean = found.iter().sum::<f64>() / pixels as f64;
+    let found = parts.map(|part| {
+        let mut film = film();
+        film.merge(&part, 1.0);
+        (0..pixels).map(|pixel| scalar(film.mean(pixel))).collect::<Vec<f64>>()
+    });
+    let mean = found.iter().flatten().sum::<f64>() / (PARTS * pixels) as f64;
     if mean <= 0.0 {
         return vec![1.0; pixels];
     }
-    let smooth = smooth(&found, space.window.width() as usize, reach(mutations, pixels));
-    smooth.iter().map(|b| b.max(FLOOR * mean)).collect()
+    let smooth = found.map(|found| surfaces.smooth(&found, reach(mutations, pixels)));
+    let logarithms = |pixel: usize| smooth.iter().map(move |part| part[pixel].max(FLOOR * mean).ln());
+    (0..pixels).map(|pixel| (logarithms(pixel).sum::<f64>() / PARTS as f64).exp()).collect()
 }
 
 /// How many times as many eye paths as usual each pixel gets, given the share of them that mirrors and glass send on.
@@ -155,7 +168,7 @@ fn effort(sent_on: &[f64]) -> Vec<u32> {
 
 /// Brightness of each pixel as two sets of eye paths agree on it, for what only one of them found is a firefly; and the
 /// share of them that mirrors and glass send on.
-fn seen_by_walks(chains: &PlainChains<'_>) -> (Vec<f64>, Vec<f64>) {
+fn seen_by_walks(chains: &PlainChains<'_>, surfaces: &Surfaces) -> (Vec<f64>, Vec<f64>) {
     let space = &chains.space;
     let pixels = space.window.pixels();
     let reach = reach(BRIGHTNESS.for_pixels(pixels), pixels);
@@ -168,33 +181,12 @@ fn seen_by_walks(chains: &PlainChains<'_>) -> (Vec<f64>, Vec<f64>) {
         first_look::glances(space, &settings, half, step)
     });
     let smoothed = |glances: &[Glance], of: fn(&Glance) -> f64| {
-        smooth(&glances.iter().map(of).collect::<Vec<_>>(), space.window.width() as usize, reach)
+        surfaces.smooth(&glances.iter().map(of).collect::<Vec<_>>(), reach)
     };
     let agreed = |of: fn(&Glance) -> f64, join: fn(f64, f64) -> f64| {
         smoothed(&a, of).into_iter().zip(smoothed(&b, of)).map(|(a, b)| join(a, b)).collect()
     };
     (agreed(|seen| seen.brightness, f64::min), agreed(|seen| seen.sent_on, |a, b| (a + b) / 2.0))
-}
-
-/// Mean over the square of pixels around each.
-fn smooth(values: &[f64], width: usize, reach: usize) -> Vec<f64> {
-    let height = values.len() / width;
-    let span = |i: usize, n: usize| i.saturating_sub(reach)..(i + reach + 1).min(n);
-    let across = |row: &[f64]| -> Vec<f64> {
-        let mean = |columns: Range<usize>| row[columns.clone()].iter().sum::<f64>() / columns.len() as f64;
-        (0..width).map(|x| mean(span(x, width))).collect()
-    };
-    let rows: Vec<Vec<f64>> = values.par_chunks(width).map(across).collect();
-    let down = |y: usize| {
-        let rows = &rows[span(y, height)];
-        let mut sums = vec![0.0; width];
-        for row in rows {
-            sums.iter_mut().zip(row).for_each(|(sum, value)| *sum += value);
-        }
-        let count = rows.len() as f64;
-        sums.into_iter().map(move |sum| sum / count)
-    };
-    (0..height).into_par_iter().flat_map_iter(down).collect()
 }
 
 /// Relative second moments of one sample, averaged over pixels, what is left to chains, and costs in rays.
@@ -261,7 +253,7 @@ fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Op
     let film = || Film::new(space.window.pixels(), 1.0);
     let [paths, bases, residuals] = [(); 3].map(|()| film().round());
     let run = Run { length: LENGTH, ..chains.run(GAIN_ROUND, mutations) };
-    let totals = chains.render(&run, |path, aim, share| {
+    let totals = chains.render(&run, |_, path, aim, share| {
         let Some(pixel) = space.pixel(path.raster) else { return };
         let brightness = brightness[pixel];
         let c = base::contribution(path);

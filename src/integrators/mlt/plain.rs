@@ -15,7 +15,7 @@ use super::{
     direct,
     mutations::mutations,
     path::{Path, Space},
-    seeds::{Bootstrap, Pool, resample},
+    seeds::{Bootstrap, Candidate, Pool, resample},
     target::{Aim, Plain, Relative, Target},
 };
 use crate::{Context, Integrator, Report, Rounds, bdpt::MAX_VERTICES};
@@ -95,7 +95,7 @@ impl<'a> PlainChains<'a> {
         if choice == Choice::Learned {
             let count = (space.window.pixels() as u64).clamp(1 << 17, 1 << 21);
             let learned = chains
-                .render(&Run { learning: true, ..chains.run(LEARNING_ROUND, count) }, |_, _, _| ())
+                .render(&Run { learning: true, ..chains.run(LEARNING_ROUND, count) }, |_, _, _, _| ())
                 .learned;
             chains.table = learned.map_or_else(|| usual.clone(), |learner| learner.table(&usual));
         }
@@ -128,8 +128,9 @@ impl<'a> PlainChains<'a> {
         Bootstrap { space: self.space, seed: self.cx.settings.seed, round, samples }
     }
 
-    /// One round. `record` takes a path, its aim, and how much of the window's mean brightness its steps stand for.
-    pub fn render(&self, run: &Run<'_>, record: impl Fn(&Path, &Aim, f64) + Sync) -> Totals {
+    /// One round. `record` takes what the chain began from, a path, its aim, and how much of the window's mean brightness its
+    /// steps stand for.
+    pub fn render(&self, run: &Run<'_>, record: impl Fn(&Candidate, &Path, &Aim, f64) + Sync) -> Totals {
         let Run { round, mutations, length, relative_to, learning } = *run;
         let relative = relative_to.map(|brightness| Relative { space: self.space, brightness });
         let target: &dyn Target = relative.as_ref().map_or(&Plain, |relative| relative);
@@ -150,10 +151,11 @@ impl<'a> PlainChains<'a> {
         let step = brightness / (count as f64 * f64::from(length));
         let (mutations, table) = (self.mutations.as_slice(), &self.table);
         let kernel = Kernel { space: self.space, mutations, table, target };
+        let start = |index: usize| &candidates[seeds[index] as usize];
         let totals = Chains { cx: self.cx, kernel, round, length, learning }.run(
             count,
-            |index, tracer, path| bootstrap.replay(&candidates[seeds[index] as usize], tracer, path),
-            |path, aim, steps| record(path, aim, steps * step),
+            |index, tracer, path| bootstrap.replay(start(index), tracer, path),
+            |index, path, aim, steps| record(start(index), path, aim, steps * step),
         );
         Totals { pool, ..totals }
     }
@@ -174,7 +176,7 @@ impl Rounds for MltRounds<'_> {
         let pixels = space.window.pixels();
         direct::render(space, (settings.seed, round), (settings.samples_per_round / 8).max(1), film);
         let mutations = u64::from(settings.samples_per_round) * pixels as u64;
-        let totals = self.chains.render(&self.chains.run(round, mutations), |path, aim, share| {
+        let totals = self.chains.render(&self.chains.run(round, mutations), |_, path, aim, share| {
             if let Some(pixel) = space.pixel(path.raster) {
                 film.add(pixel, aim.deposit * (share * pixels as f64));
             }
