@@ -12,6 +12,8 @@ const ALIKE: f32 = 0.8;
 /// How many times as bright as its own surface the surroundings of a pixel may make it. Some is good: chains pass an edge
 /// more easily where brightness rises towards it.
 const MOST_BLEEDING: f64 = 4.0;
+/// Share of the square that has to see the pixel's own surface for it to be told apart: a blade of grass is too small.
+const LEAST_OWN: f64 = 0.2;
 
 /// What each pixel of the window sees first.
 pub struct Surfaces {
@@ -27,11 +29,16 @@ impl Surfaces {
     }
 
     /// Mean over the square of pixels around each, `reach` on each side; but where others see another surface, at most a
-    /// few times the mean over those that see the same: light through a gap is not that on the door beside it.
+    /// few times the mean over those that see the same, if they are not few: light through a gap is not that on the door
+    /// beside it.
     pub fn smooth(&self, values: &[f64], reach: usize) -> Vec<f64> {
         let own = self.mean(values, reach, |pixel, other| self.goes_on(pixel, other));
         let all = self.mean(values, reach, |_, _| true);
-        own.into_iter().zip(all).map(|(own, all)| all.max(own).min(MOST_BLEEDING * own)).collect()
+        let join = |((own, some), (all, square)): ((f64, usize), (f64, usize))| {
+            let few = (some as f64) < LEAST_OWN * square as f64;
+            if few { all } else { all.max(own).min(MOST_BLEEDING * own) }
+        };
+        own.into_iter().zip(all).map(join).collect()
     }
 
     /// Whether pixel `other` sees the surface that `pixel` sees.
@@ -44,8 +51,13 @@ impl Surfaces {
                     && normal.dot(there.position - here.position).abs() <= FLAT * here.depth)
     }
 
-    /// Mean over those pixels of the square that `belongs` lets in, along rows and then along columns.
-    fn mean(&self, values: &[f64], reach: usize, belongs: impl Fn(usize, usize) -> bool + Sync) -> Vec<f64> {
+    /// Mean over those pixels of the square that `belongs` lets in, along rows and then along columns; and their number.
+    fn mean(
+        &self,
+        values: &[f64],
+        reach: usize,
+        belongs: impl Fn(usize, usize) -> bool + Sync,
+    ) -> Vec<(f64, usize)> {
         let (width, height) = (self.width, values.len() / self.width);
         let span = |i: usize, n: usize| i.saturating_sub(reach)..(i + reach + 1).min(n);
         let belongs = |pixel, other| pixel == other || belongs(pixel, other);
@@ -60,7 +72,7 @@ impl Surfaces {
             let (x, y) = (pixel % width, pixel / width);
             let others = span(y, height).map(|y| y * width + x).filter(|&other| belongs(pixel, other));
             let (sum, count) = others.map(|other| rows[other]).fold((0.0, 0), add);
-            sum / count as f64
+            (sum / count as f64, count)
         };
         (0..values.len()).into_par_iter().map(down).collect()
     }
@@ -93,6 +105,14 @@ mod tests {
         assert_eq!((row(2), row(9)), (1.0, 1.0));
         assert_eq!((row(3), row(4), row(7), row(8)), (4.0, 4.0, 4.0, 4.0));
         assert_eq!((row(5), row(6)), (1000.0, 1000.0));
+    }
+
+    #[test]
+    fn a_surface_of_few_pixels_is_not_told_apart() {
+        let (mut surfaces, values) = gap();
+        let alone = 24 + 3;
+        surfaces.seen[alone].object = 3;
+        assert_eq!(surfaces.smooth(&values, 2)[alone], 200.8);
     }
 
     #[test]
