@@ -55,8 +55,8 @@ fn is_sent_on(walked: &[Vertex]) -> bool {
     }
 }
 
-/// What the samples of each pixel see. One pixel speaks for a square of them, `step` on each side.
-pub fn glances(space: &Space<'_>, settings: &Settings, round: u32, step: usize) -> Vec<Glance> {
+/// What the samples of pixels see, of one pixel in each square with sides of `step`.
+pub fn glances(space: &Space<'_>, settings: &Settings, round: u32, step: usize) -> Vec<Option<Glance>> {
     let mean = |pixel| {
         let mut look = Look::default();
         let mut sent_on = 0;
@@ -69,14 +69,9 @@ pub fn glances(space: &Space<'_>, settings: &Settings, round: u32, step: usize) 
         Glance { brightness: look.brightness / samples, sent_on: sent_on as f64 / samples }
     };
     let width = space.window.width() as usize;
-    let columns = width.div_ceil(step);
-    let rows = (space.window.pixels() / width).div_ceil(step);
-    let found: Vec<Glance> = (0..columns * rows)
-        .into_par_iter()
-        .map(|square| (square / columns * width + square % columns) * step)
-        .map(|pixel| if space.cancelled() { Glance::default() } else { mean(pixel) })
-        .collect();
+    let speaks = |pixel: usize| (pixel % width).is_multiple_of(step) && (pixel / width).is_multiple_of(step);
     (0..space.window.pixels())
-        .map(|pixel| found[pixel / width / step * columns + pixel % width / step])
+        .into_par_iter()
+        .map(|pixel| (speaks(pixel) && !space.cancelled()).then(|| mean(pixel)))
         .collect()
 }

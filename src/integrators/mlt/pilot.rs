@@ -15,7 +15,7 @@ use super::{
     path::{Path, Space},
     plain::{PlainChains, Run},
     seeds::Candidate,
-    smooth::Surfaces,
+    smooth::{Surfaces, Values, smooth},
     target::Aim,
 };
 use crate::Settings;
@@ -43,9 +43,9 @@ const GAIN: Mutations = Mutations { a_pixel: 8, fewest: 1 << 15, most: 1 << 19 }
 const CLEARLY: f64 = 0.7;
 /// Steps of each chain: they begin where bidirectional samples say, and need not go far from there.
 const LENGTH: u32 = 128;
-/// Parts of the chains of which each finds the brightness by itself.
-const PARTS: usize = 4;
-/// Mutations that the square of pixels to average over should hold.
+/// Parts of the chains of which each finds the brightness by itself: the channels of a film.
+const PARTS: usize = 3;
+/// Mutations that the square of pixels to average over should hold, of all parts.
 const AVERAGED: f64 = 300.0;
 /// Eye paths, twice, that look for what the chains missed, and most a pixel.
 const WALKS: usize = 1 << 17;
@@ -100,14 +100,14 @@ pub struct Plan {
 pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
     let pays = |gain: &Gain, least| always || gain.advantage() > least;
     let pixels = chains.space.window.pixels();
-    let surfaces = Surfaces::new(&chains.space);
-    let rough = seen_by_chains(chains, &surfaces, None, ROUGH.for_pixels(pixels));
+    let rough = seen_by_chains(chains, None, ROUGH.for_pixels(pixels));
     gain_over(chains, &rough, ROUGH.for_pixels(pixels)).filter(|gain| pays(gain, CLEARLY))?;
-    // Chains may have missed what walks find easily. A brightness that is too low costs much, one that is too high
-    // little.
-    let chained = seen_by_chains(chains, &surfaces, Some(&rough), BRIGHTNESS.for_pixels(pixels));
+    let surfaces = Surfaces::new(&chains.space);
+    let mut brightness = seen_by_chains(chains, Some((&rough, &surfaces)), BRIGHTNESS.for_pixels(pixels));
     let (walked, sent_on) = seen_by_walks(chains, &surfaces);
-    let brightness: Vec<f64> = chained.into_iter().zip(walked).map(|(a, b)| a.max(b)).collect();
+    drop(surfaces);
+    // Chains may have missed what walks find easily; a brightness that is too low costs more than one as much too high.
+    brightness.iter_mut().zip(walked).for_each(|(chained, walked)| *chained = chained.max(walked));
     let gain = gain_over(chains, &brightness, GAIN.for_pixels(pixels));
     let gain = gain.filter(|gain| pays(gain, 1.0))?;
     let mutations_per_sample = gain.mutations_per_sample();
@@ -123,40 +123,46 @@ fn reach(samples: u64, pixels: usize) -> usize {
 }
 
 /// Brightness of each pixel as so many mutations find it, nowhere 0. Those that visit pixels in proportion to
-/// their brightness learn little of dark ones; they do better relative to what is known `before`. A chain that stays long at
-/// a place has a say in one of several parts only, whose mean is geometric.
-fn seen_by_chains(
-    chains: &PlainChains<'_>,
-    surfaces: &Surfaces,
-    before: Option<&[f64]>,
-    mutations: u64,
-) -> Vec<f64> {
+/// their brightness learn little of dark ones; they do better relative to what is known `before`, and then tell surfaces
+/// apart. A chain that stays long at a place has a say in one of several parts only, whose mean is geometric.
+fn seen_by_chains(chains: &PlainChains<'_>, before: Option<(&[f64], &Surfaces)>, mutations: u64) -> Vec<f64> {
     let space = &chains.space;
     let pixels = space.window.pixels();
-    let film = || Film::new(pixels, crate::brightness(space.world, space.max_depth));
-    let parts = [(); PARTS].map(|()| film().round());
+    let mut film = Film::new(pixels, crate::brightness(space.world, space.max_depth));
+    let round = film.round();
     let record = |start: &Candidate, path: &Path, aim: &Aim, share: f64| {
         if let Some(pixel) = space.pixel(path.raster) {
-            parts[start.sample as usize % PARTS].add(pixel, aim.deposit * (share * (PARTS * pixels) as f64));
+            let mut parts = Rgb::ZERO;
+            parts[part(start.sample)] = scalar(aim.deposit) * (share * (PARTS * pixels) as f64);
+            round.add(pixel, parts);
         }
     };
     let number = if before.is_some() { BRIGHTNESS_ROUND } else { ROUGH_ROUND };
-    chains.render(&Run { length: LENGTH, relative_to: before, ..chains.run(number, mutations) }, record);
+    let relative_to = before.map(|(brightness, _)| brightness);
+    chains.render(&Run { length: LENGTH, relative_to, ..chains.run(number, mutations) }, record);
     if space.cancelled() {
         return vec![1.0; pixels];
     }
-    let found = parts.map(|part| {
-        let mut film = film();
-        film.merge(&part, 1.0);
-        (0..pixels).map(|pixel| scalar(film.mean(pixel))).collect::<Vec<f64>>()
-    });
-    let mean = found.iter().flatten().sum::<f64>() / (PARTS * pixels) as f64;
+    film.merge(&round, 1.0);
+    let found: Vec<Values> = (0..pixels).map(|pixel| film.mean(pixel).extend(1.0)).collect();
+    drop((round, film));
+    let mean = found.iter().map(|parts| scalar(parts.truncate())).sum::<f64>() / pixels as f64;
     if mean <= 0.0 {
         return vec![1.0; pixels];
     }
-    let smooth = found.map(|found| surfaces.smooth(&found, reach(mutations, pixels)));
-    let logarithms = |pixel: usize| smooth.iter().map(move |part| part[pixel].max(FLOOR * mean).ln());
-    (0..pixels).map(|pixel| (logarithms(pixel).sum::<f64>() / PARTS as f64).exp()).collect()
+    let reach = reach(mutations, pixels);
+    let parts = match before {
+        Some((_, surfaces)) => surfaces.smooth(&found, reach),
+        None => smooth(&found, space.window.width() as usize, reach),
+    };
+    let least = Rgb::splat(FLOOR * mean);
+    parts.into_par_iter().map(|parts| parts.max(least).element_product().cbrt()).collect()
+}
+
+/// To which of the parts a bidirectional sample belongs, by Weyl's sequence: low bits of its number say at which columns of
+/// the image it begins, high bits at which rows.
+fn part(sample: u32) -> usize {
+    ((u64::from(sample.wrapping_mul(0x9E37_79B9)) * PARTS as u64) >> 32) as usize
 }
 
 /// How many times as many eye paths as usual each pixel gets, given the share of them that mirrors and glass send on.
@@ -180,13 +186,12 @@ fn seen_by_walks(chains: &PlainChains<'_>, surfaces: &Surfaces) -> (Vec<f64>, Ve
         let settings = Settings { seed, samples_per_round: walks, ..chains.cx.settings.clone() };
         first_look::glances(space, &settings, half, step)
     });
-    let smoothed = |glances: &[Glance], of: fn(&Glance) -> f64| {
-        surfaces.smooth(&glances.iter().map(of).collect::<Vec<_>>(), reach)
+    let both = |(a, b): (Option<Glance>, Option<Glance>)| match (a, b) {
+        (Some(a), Some(b)) => Values::new(a.brightness, b.brightness, (a.sent_on + b.sent_on) / 2.0, 1.0),
+        _ => Values::ZERO,
     };
-    let agreed = |of: fn(&Glance) -> f64, join: fn(f64, f64) -> f64| {
-        smoothed(&a, of).into_iter().zip(smoothed(&b, of)).map(|(a, b)| join(a, b)).collect()
-    };
-    (agreed(|seen| seen.brightness, f64::min), agreed(|seen| seen.sent_on, |a, b| (a + b) / 2.0))
+    let found: Vec<Values> = a.into_iter().zip(b).map(both).collect();
+    surfaces.smooth(&found, reach.max(step)).into_iter().map(|seen| (seen.x.min(seen.y), seen.z)).unzip()
 }
 
 /// Relative second moments of one sample, averaged over pixels, what is left to chains, and costs in rays.
@@ -300,4 +305,23 @@ fn path_cost(space: &Space<'_>, seed: u64) -> f64 {
     let vertices: usize = (0..paths).into_par_iter().map(vertices).sum();
     // At each vertex one ray to a light and one that goes on.
     2.0 * vertices as f64 / paths as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_lie_all_over_the_image() {
+        const SAMPLES: u32 = 1 << 14;
+        let mut counts = [[[0; PARTS]; 8]; 8];
+        for sample in 0..SAMPLES {
+            // As `Bootstrap` places them.
+            let (column, row) = (sample.reverse_bits() >> 29, sample * 8 / SAMPLES);
+            counts[row as usize][column as usize][part(sample)] += 1;
+        }
+        let usual = SAMPLES as usize / (64 * PARTS);
+        let all = counts.as_flattened().as_flattened();
+        assert!(all.iter().all(|&count: &usize| count.abs_diff(usual) <= usual / 5), "{all:?}");
+    }
 }

@@ -126,7 +126,8 @@ def curves(results, path):
     matplotlib.use("svg")
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(1, len(results), figsize=(4.6 * len(results), 4.2), squeeze=False)
+    size = (4.2 * len(results) + 1.6, 4.2)
+    figure, axes = plt.subplots(1, len(results), figsize=size, squeeze=False, layout="constrained")
     for axis, (name, rows) in zip(axes[0], results.items(), strict=True):
         for label in dict.fromkeys(row["renderer"] for row in rows):
             mine = [row for row in rows if row["renderer"] == label]
@@ -141,8 +142,8 @@ def curves(results, path):
             )
         axis.set(xscale="log", yscale="log", title=name, xlabel="CPU seconds", ylabel="relative mean squared error")
         axis.grid(True, which="major", alpha=0.3)
-        axis.legend(fontsize=7)
-    figure.tight_layout()
+        axis.xaxis.set_minor_formatter("{x:g}")
+    figure.legend(*axes[0][0].get_legend_handles_labels(), loc="outside right center", fontsize=8)
     figure.savefig(path)
 
 
