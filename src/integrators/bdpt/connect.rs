@@ -5,6 +5,7 @@ use ajar_render::{
     bsdf::{Evaluation, Mode},
     math::{Rgb, scalar},
     path::{Edge, Kind, ROULETTE_DEPTH, Stop, Subpath, Vertex, survival, sweep::Densities},
+    rng::Rng,
 };
 use glam::{DVec2, DVec3};
 
@@ -38,6 +39,8 @@ pub struct Connector<'w> {
     /// Which paths are wanted, all if nothing is said. Asked before looking whether something is in the way, which is most
     /// of the work.
     pub(super) wanted: Option<Wanted<'w>>,
+    /// f*/p of a technique below which Russian roulette decides whether to look at all; 0 for never.
+    pub(super) least: f64,
     /// Raster position of the eye subpath, pixels.
     pub(super) raster: DVec2,
     to_eye: [f64; MAX_VERTICES],
@@ -68,6 +71,8 @@ impl Contribution {
 pub struct Splat {
     /// Raster position, pixels.
     pub raster: DVec2,
+    /// Point of the lens.
+    pub point: [f64; 2],
     /// The lens vertex.
     pub lens: Vertex,
     /// What arrives there.
@@ -81,6 +86,7 @@ impl<'w> Connector<'w> {
             world,
             light_fraction,
             wanted: None,
+            least: 0.0,
             raster: DVec2::ZERO,
             to_eye: [0.0; MAX_VERTICES],
             to_light: [0.0; MAX_VERTICES],
@@ -110,7 +116,12 @@ impl<'w> Connector<'w> {
     }
 
     /// Technique s = 1: `x0`, a light end sampled with density `density`, seen from the eye subpath's `t`-th vertex.
-    pub fn next_event(&mut self, x0: &Vertex, density: f64, eye: &Subpath, t: usize) -> Contribution {
+    pub fn next_event(
+        &mut self,
+        (x0, density): (&Vertex, f64),
+        (eye, t): (&Subpath, usize),
+        rng: &mut Rng,
+    ) -> Contribution {
         let Some(end) = End::of(&eye.stops[t - 1]) else { return Contribution::NONE };
         let Some(edge) = Edge::between(x0, &end.vertex, self.world.shortest_edge) else {
             return Contribution::NONE;
@@ -118,7 +129,7 @@ impl<'w> Connector<'w> {
         let emitted = self.world.emitted(x0, edge.to_eye) * (self.world.coverage(x0) / density);
         let at_eye = end.vertex.evaluate(-edge.to_eye, end.to_previous);
         let value = emitted * end.throughput * at_eye.value * geometry(x0, &end.vertex, &edge);
-        let value = self.visible_unless_filtered(value, x0, &end.vertex, &edge);
+        let value = self.visible_unless_filtered(self.roulette(value, rng), x0, &end.vertex, &edge);
         if value == Rgb::ZERO {
             return Contribution::NONE;
         }
@@ -131,7 +142,12 @@ impl<'w> Connector<'w> {
     }
 
     /// Technique s ≥ 2, t ≥ 2.
-    pub fn connect(&mut self, light: &Subpath, s: usize, eye: &Subpath, t: usize) -> Contribution {
+    pub fn connect(
+        &mut self,
+        (light, s): (&Subpath, usize),
+        (eye, t): (&Subpath, usize),
+        rng: &mut Rng,
+    ) -> Contribution {
         let (Some(l), Some(e)) = (End::of(&light.stops[s - 1]), End::of(&eye.stops[t - 1])) else {
             return Contribution::NONE;
         };
@@ -145,7 +161,7 @@ impl<'w> Connector<'w> {
         let at_eye = e.vertex.evaluate(-edge.to_eye, e.to_previous);
         let scattered = l.throughput * at_light.value * at_eye.value * e.throughput;
         let value = scattered * geometry(&l.vertex, &e.vertex, &edge);
-        let value = self.visible_unless_filtered(value, &l.vertex, &e.vertex, &edge);
+        let value = self.visible_unless_filtered(self.roulette(value, rng), &l.vertex, &e.vertex, &edge);
         if value == Rgb::ZERO {
             return Contribution::NONE;
         }
@@ -158,16 +174,17 @@ impl<'w> Connector<'w> {
         self.visible_if_wanted(found, self.raster, &l.vertex, &e.vertex, &edge)
     }
 
-    /// Technique t = 1: the light subpath's `s`-th vertex, s ≥ 2, seen through the lens point `lens`.
-    pub fn splat(&mut self, light: &Subpath, s: usize, lens: [f64; 2]) -> Option<Splat> {
+    /// Technique t = 1: the light subpath's `s`-th vertex, s ≥ 2, seen through a point of the lens.
+    pub fn splat(&mut self, (light, s): (&Subpath, usize), rng: &mut Rng) -> Option<Splat> {
+        let point = rng.pair();
         let end = End::of(&light.stops[s - 1])?;
-        let seen = self.world.camera.connect(end.vertex.p, lens)?;
+        let seen = self.world.camera.connect(end.vertex.p, point)?;
         let lens = self.world.lens_vertex(seen.lens);
         let edge = Edge { to_eye: seen.direction, length: seen.distance, falloff: 1.0 };
         let scattering = end.vertex.evaluate(end.to_previous, seen.direction);
         let value =
             end.throughput * scattering.value * (end.vertex.projected(seen.direction) * seen.importance);
-        let value = self.visible_unless_filtered(value, &end.vertex, &lens, &edge);
+        let value = self.visible_unless_filtered(self.roulette(value, rng), &end.vertex, &lens, &edge);
         if value == Rgb::ZERO {
             return None;
         }
@@ -178,7 +195,13 @@ impl<'w> Connector<'w> {
         self.join_light(light, &end, &scattering, &lens, &edge, (s, 1));
         let found = self.weigh(value, &light.stops[0].vertex, (s, 1), inner(&light.stops[1..s], &[]));
         let found = self.visible_if_wanted(found, seen.raster, &end.vertex, &lens, &edge);
-        Some(Splat { raster: seen.raster, lens, found })
+        Some(Splat { raster: seen.raster, point, lens, found })
+    }
+
+    /// Saves most of what is too dim to be worth a ray that work, and weighs the rest accordingly.
+    fn roulette(&self, value: Rgb, rng: &mut Rng) -> Rgb {
+        let chance = scalar(value) / self.least;
+        if chance < 1.0 { if rng.f64() < chance { value / chance } else { Rgb::ZERO } } else { value }
     }
 
     /// `value` times what of it crosses the edge, unless that is looked for later; no ray is cast for nothing.

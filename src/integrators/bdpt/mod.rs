@@ -106,6 +106,12 @@ impl<'w> Tracer<'w> {
         self
     }
 
+    /// Plays Russian roulette with connections whose f*/p is less than `least`, before it casts rays for them.
+    pub fn at_least(mut self, least: f64) -> Self {
+        self.connector.least = least;
+        self
+    }
+
     /// One eye and one light subpath and all their connections that carry light. Contributions are for a film of pixel
     /// measure.
     pub fn sample(
@@ -132,16 +138,15 @@ impl<'w> Tracer<'w> {
                 continue;
             }
             if let Some((x0, density)) = world.lights.sample(rng.f64(), rng.pair()) {
-                found(1, t, raster, lens, Some(&x0), connector.next_event(&x0, density, eye, t));
+                found(1, t, raster, lens, Some(&x0), connector.next_event((&x0, density), (eye, t), rng));
             }
             for s in 2..=light.len().min(*max_depth + 1 - t) {
-                found(s, t, raster, lens, None, connector.connect(light, s, eye, t));
+                found(s, t, raster, lens, None, connector.connect((light, s), (eye, t), rng));
             }
         }
         for s in 2..=light.len() {
-            let lens = rng.pair();
-            if let Some(splat) = connector.splat(light, s, lens) {
-                found(s, 1, splat.raster, lens, Some(&splat.lens), splat.found);
+            if let Some(splat) = connector.splat((light, s), rng) {
+                found(s, 1, splat.raster, splat.point, Some(&splat.lens), splat.found);
             }
         }
     }

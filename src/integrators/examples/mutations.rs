@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Paths in proportion to their contribution.
 fn seeds(space: Space<'_>) -> Vec<Path> {
-    let bootstrap = Bootstrap { space, seed: 1, round: 0, samples: 1 << 16 };
+    let bootstrap = Bootstrap::new(space, (1, 0), 1 << 16);
     let mut candidates = bootstrap.candidates();
     let chosen = resample(&mut candidates, SEEDS, &mut Rng::new(1, Purpose::Resampling, 0, 0));
     let mut tracer = bootstrap.tracer();

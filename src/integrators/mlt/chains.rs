@@ -36,16 +36,15 @@ struct Group {
 }
 
 impl<'a> Chains<'a> {
-    /// Runs `count` chains. `find_seed` builds the first path of each; `record` takes the chain's index, paths, what they aim
+    /// Runs `count` chains. `find_seed` builds the first path of each, by one `tracer` for each thread; `record` takes the chain's index, paths, what they aim
     /// at and the steps that they stand for.
-    pub fn run(
+    pub fn run<'t>(
         &self,
         count: usize,
-        find_seed: impl Fn(usize, &mut Tracer<'a>, &mut Path) -> Option<()> + Sync,
+        tracer: impl Fn() -> Tracer<'t> + Sync + Send,
+        find_seed: impl Fn(usize, &mut Tracer<'t>, &mut Path) -> Option<()> + Sync,
         record: impl Fn(usize, &Path, &Aim, f64) + Sync,
     ) -> Totals {
-        let space = &self.kernel.space;
-        let tracer = || Tracer::new(space.world, space.max_depth, 1.0 / space.film_ratio);
         let (seed, metropolis) = (self.cx.settings.seed, &self.cx.settings.metropolis);
         let stream = |index: usize| Rng::new(seed, Purpose::Chain, self.round, index as u64);
         // Chains of a group are far apart in the order of seeds; those of a list share nothing.

@@ -125,7 +125,7 @@ impl Rounds for AjarRounds<'_> {
             beside: f64::from(beside) / samples,
         };
         let left = base::render(&split, settings, round, |pixel, value| film.add(pixel, value));
-        let bootstrap = Bootstrap { space: self.space, seed: settings.seed, round, samples: beside };
+        let bootstrap = Bootstrap::new(self.space, (settings.seed, round), beside);
         let found = bootstrap.candidates_worth(&|raster, alone| split.is_sought_beside(raster, alone), |x| {
             split.seed_beside(x)
         });
@@ -150,6 +150,7 @@ impl Rounds for AjarRounds<'_> {
         let kernel = Kernel { space: self.space, mutations, table, target: &split };
         let totals = Chains { cx: self.cx, kernel, round, length, learning: false }.run(
             seeds.len(),
+            || bootstrap.tracer(),
             |index, tracer, path| match seeds[index] {
                 Seed::Base(pixel, rest) => base::replay(&split, settings, round, (pixel, rest), path),
                 Seed::Bidirectional(candidate) => bootstrap.replay(&candidate, tracer, path),

@@ -7,7 +7,11 @@ use ajar_render::{
 };
 use rayon::prelude::*;
 
-use super::{base, path::Space};
+use super::{
+    base,
+    path::Space,
+    smooth::{Values, smooth},
+};
 use crate::{
     Settings,
     path::{Found, Visitor},
@@ -55,8 +59,21 @@ fn is_sent_on(walked: &[Vertex]) -> bool {
     }
 }
 
-/// What the samples of pixels see, of one pixel in each square with sides of `step`.
-pub fn glances(space: &Space<'_>, settings: &Settings, round: u32, step: usize) -> Vec<Option<Glance>> {
+/// Eye paths of a look, and most a pixel.
+const WALKS: usize = 1 << 17;
+const MOST_WALKS: u32 = 2;
+
+/// Of how many pixels in a row one is looked at, and of how many rows.
+pub fn step(pixels: usize) -> usize {
+    (pixels as f64 / WALKS as f64).sqrt().ceil().max(1.0) as usize
+}
+
+/// What the samples of pixels see, of one in each square with sides of [`step`]. Each `round` has its own samples, which are
+/// others than those of the image: its brightness must not decide on itself.
+pub fn glances(space: &Space<'_>, settings: &Settings, round: u32) -> Vec<Option<Glance>> {
+    let pixels = space.window.pixels();
+    let (step, walks) = (step(pixels), ((WALKS / pixels) as u32).clamp(1, MOST_WALKS));
+    let settings = Settings { seed: !settings.seed, samples_per_round: walks, ..settings.clone() };
     let mean = |pixel| {
         let mut look = Look::default();
         let mut sent_on = 0;
@@ -70,8 +87,32 @@ pub fn glances(space: &Space<'_>, settings: &Settings, round: u32, step: usize) 
     };
     let width = space.window.width() as usize;
     let speaks = |pixel: usize| (pixel % width).is_multiple_of(step) && (pixel / width).is_multiple_of(step);
-    (0..space.window.pixels())
+    (0..pixels)
         .into_par_iter()
         .map(|pixel| (speaks(pixel) && !space.cancelled()).then(|| mean(pixel)))
         .collect()
+}
+
+/// How many times as many samples pixels get at most that are seen through mirrors or glass alone. Curved ones break what
+/// they show into pieces smaller than a pixel; chains seldom pass from one to another, so that samples have to find each.
+const MOST_EFFORT: f64 = 12.0;
+/// Samples that this may add, relative to the usual ones.
+const MOST_ADDED: f64 = 0.5;
+
+/// How many times as many samples as usual each pixel gets, given the share of them that mirrors and glass send on.
+pub fn spread(sent_on: &[f64]) -> Vec<u32> {
+    let mean = sent_on.iter().sum::<f64>() / sent_on.len() as f64;
+    let added = (MOST_EFFORT - 1.0).min(MOST_ADDED / mean);
+    sent_on.iter().map(|share| 1 + (added * share).round() as u32).collect()
+}
+
+/// The same, found by a look of its own.
+pub fn efforts(space: &Space<'_>, settings: &Settings) -> Vec<u32> {
+    let glances = glances(space, settings, 0).into_iter();
+    let found: Vec<Values> = glances
+        .map(|glance| glance.map_or(Values::ZERO, |seen| Values::new(seen.sent_on, 0.0, 0.0, 1.0)))
+        .collect();
+    let reach = step(found.len()) / 2;
+    let sent_on = smooth(&found, space.window.width() as usize, reach);
+    spread(&sent_on.iter().map(|seen| seen.x).collect::<Vec<_>>())
 }

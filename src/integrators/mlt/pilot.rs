@@ -18,7 +18,6 @@ use super::{
     smooth::{Surfaces, Values, smooth},
     target::Aim,
 };
-use crate::Settings;
 
 /// How many mutations a step of the pilot takes.
 struct Mutations {
@@ -41,15 +40,15 @@ const BRIGHTNESS: Mutations = Mutations { a_pixel: 16, fewest: 1 << 16, most: 1 
 const GAIN: Mutations = Mutations { a_pixel: 8, fewest: 1 << 15, most: 1 << 19 };
 /// How much smaller the error of paths alone must be for the first look to decide: it is right within a third.
 const CLEARLY: f64 = 0.7;
+/// Mutations for each bidirectional sample that looks for seeds. They are fewer than where chains make the image: what one of
+/// them makes too bright lies in one part and in few squares.
+const MUTATIONS_PER_SAMPLE: u64 = 64;
 /// Steps of each chain: they begin where bidirectional samples say, and need not go far from there.
 const LENGTH: u32 = 128;
 /// Parts of the chains of which each finds the brightness by itself: the channels of a film.
 const PARTS: usize = 3;
 /// Mutations that the square of pixels to average over should hold, of all parts.
 const AVERAGED: f64 = 300.0;
-/// Eye paths, twice, that look for what the chains missed, and most a pixel.
-const WALKS: usize = 1 << 17;
-const MOST_WALKS: u32 = 2;
 /// Round numbers of the pilots.
 const BRIGHTNESS_ROUND: u32 = u32::MAX - 1;
 const GAIN_ROUND: u32 = u32::MAX - 2;
@@ -58,12 +57,6 @@ const ROUGH_ROUND: u32 = u32::MAX - 4;
 const FLOOR: f64 = 0.1;
 /// Steps that a chain needs to forget a pixel: measured between 4 in easy scenes and 47 behind a door.
 const CORRELATION: f64 = 15.0;
-/// How many times as many eye paths pixels get at most that are seen through mirrors or glass alone. Curved ones break
-/// what they show into pieces smaller than a pixel; chains seldom pass from one to another, so that eye paths have to find
-/// each.
-const MOST_EFFORT: f64 = 12.0;
-/// Eye paths that this may add, relative to the usual ones.
-const MOST_ADDED: f64 = 0.5;
 /// Even spread makes an eye path worth about this many random ones where paths alone do well.
 const EVENNESS: f64 = 1.5;
 /// What κ may be: where chains render next to everything, more would leave fireflies in the base; where they render
@@ -113,7 +106,14 @@ pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
     let mutations_per_sample = gain.mutations_per_sample();
     let beside = gain.beside(mutations_per_sample);
     let Gain { clamp, residual, .. } = gain;
-    Some(Plan { brightness, effort: effort(&sent_on), clamp, mutations_per_sample, beside, residual })
+    Some(Plan {
+        brightness,
+        effort: first_look::spread(&sent_on),
+        clamp,
+        mutations_per_sample,
+        beside,
+        residual,
+    })
 }
 
 /// Pixels on each side over which to average `samples` of `pixels`.
@@ -139,7 +139,7 @@ fn seen_by_chains(chains: &PlainChains<'_>, before: Option<(&[f64], &Surfaces)>,
     };
     let number = if before.is_some() { BRIGHTNESS_ROUND } else { ROUGH_ROUND };
     let relative_to = before.map(|(brightness, _)| brightness);
-    chains.render(&Run { length: LENGTH, relative_to, ..chains.run(number, mutations) }, record);
+    chains.render(&Run { relative_to, ..run(chains, number, mutations) }, record);
     if space.cancelled() {
         return vec![1.0; pixels];
     }
@@ -159,17 +159,14 @@ fn seen_by_chains(chains: &PlainChains<'_>, before: Option<(&[f64], &Surfaces)>,
     parts.into_par_iter().map(|parts| parts.max(least).element_product().cbrt()).collect()
 }
 
+fn run(chains: &PlainChains<'_>, round: u32, mutations: u64) -> Run<'static> {
+    Run { length: LENGTH, mutations_per_sample: MUTATIONS_PER_SAMPLE, ..chains.run(round, mutations) }
+}
+
 /// To which of the parts a bidirectional sample belongs, by Weyl's sequence: low bits of its number say at which columns of
 /// the image it begins, high bits at which rows.
 fn part(sample: u32) -> usize {
     ((u64::from(sample.wrapping_mul(0x9E37_79B9)) * PARTS as u64) >> 32) as usize
-}
-
-/// How many times as many eye paths as usual each pixel gets, given the share of them that mirrors and glass send on.
-fn effort(sent_on: &[f64]) -> Vec<u32> {
-    let mean = sent_on.iter().sum::<f64>() / sent_on.len() as f64;
-    let added = (MOST_EFFORT - 1.0).min(MOST_ADDED / mean);
-    sent_on.iter().map(|share| 1 + (added * share).round() as u32).collect()
 }
 
 /// Brightness of each pixel as two sets of eye paths agree on it, for what only one of them found is a firefly; and the
@@ -178,14 +175,8 @@ fn seen_by_walks(chains: &PlainChains<'_>, surfaces: &Surfaces) -> (Vec<f64>, Ve
     let space = &chains.space;
     let pixels = space.window.pixels();
     let reach = reach(BRIGHTNESS.for_pixels(pixels), pixels);
-    let step = (pixels as f64 / WALKS as f64).sqrt().ceil().max(1.0) as usize;
-    let walks = ((WALKS / pixels) as u32).clamp(1, MOST_WALKS);
-    let [a, b] = [0, 1].map(|half| {
-        // Other samples than those of the image, which must not depend on its own brightness.
-        let seed = !chains.cx.settings.seed;
-        let settings = Settings { seed, samples_per_round: walks, ..chains.cx.settings.clone() };
-        first_look::glances(space, &settings, half, step)
-    });
+    let step = first_look::step(pixels);
+    let [a, b] = [0, 1].map(|half| first_look::glances(space, chains.cx.settings, half));
     let both = |(a, b): (Option<Glance>, Option<Glance>)| match (a, b) {
         (Some(a), Some(b)) => Values::new(a.brightness, b.brightness, (a.sent_on + b.sent_on) / 2.0, 1.0),
         _ => Values::ZERO,
@@ -257,8 +248,7 @@ fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Op
     // Sums are made per pixel and then in order: the order of threads must not show.
     let film = || Film::new(space.window.pixels(), 1.0);
     let [paths, bases, residuals] = [(); 3].map(|()| film().round());
-    let run = Run { length: LENGTH, ..chains.run(GAIN_ROUND, mutations) };
-    let totals = chains.render(&run, |_, path, aim, share| {
+    let totals = chains.render(&run(chains, GAIN_ROUND, mutations), |_, path, aim, share| {
         let Some(pixel) = space.pixel(path.raster) else { return };
         let brightness = brightness[pixel];
         let c = base::contribution(path);

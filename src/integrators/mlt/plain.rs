@@ -12,7 +12,7 @@ use super::{
     chain::Kernel,
     chains::{Chains, Totals},
     choice::{Choice, Table},
-    direct,
+    direct, first_look,
     mutations::mutations,
     path::{Path, Space},
     seeds::{Bootstrap, Candidate, Pool, resample},
@@ -20,13 +20,14 @@ use super::{
 };
 use crate::{Context, Integrator, Report, Rounds, bdpt::MAX_VERTICES};
 
-/// Mutations for each bidirectional sample of the bootstrap, which costs some ten times as much as one.
-const MUTATIONS_PER_SAMPLE: u64 = 64;
+/// Mutations for each bidirectional sample of the bootstrap, which costs some fifteen times as much as one: a third of the
+/// time and more goes into seeds. A rare path that few samples find is the start of many chains, and a firefly.
+const MUTATIONS_PER_SAMPLE: u64 = 24;
 /// Fewest samples of a bootstrap, and most that are tried to find light at all.
 const LEAST_SAMPLES: u32 = 1 << 12;
 const MOST_SAMPLES: u32 = 1 << 20;
 /// Paths that a bootstrap should find.
-const FEW_CANDIDATES: usize = 256;
+const FEW_CANDIDATES: u64 = 256;
 /// Round number of the pilot that learns.
 const LEARNING_ROUND: u32 = u32::MAX - 3;
 
@@ -48,7 +49,9 @@ impl Integrator for Mlt {
     }
 
     fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a> {
-        Box::new(MltRounds { chains: PlainChains::new(cx), totals: Mutex::default() })
+        let mut chains = PlainChains::new(cx);
+        chains.takes = first_look::efforts(&chains.space, cx.settings);
+        Box::new(MltRounds { chains, totals: Mutex::default() })
     }
 }
 
@@ -59,6 +62,8 @@ pub struct Run<'b> {
     pub round: u32,
     /// Mutations of all chains, about.
     pub mutations: u64,
+    /// Mutations for each bidirectional sample that looks for seeds.
+    pub mutations_per_sample: u64,
     /// Mutations of each chain.
     pub length: u32,
     /// If given, paths are visited in proportion to their contributions relative to this brightness of each pixel.
@@ -77,6 +82,10 @@ pub struct PlainChains<'a> {
     pub mutations: Vec<&'static dyn Mutation>,
     /// How often.
     pub table: Table,
+    /// Takes of the bidirectional samples at each pixel, as [`Bootstrap`] has them.
+    takes: Vec<u32>,
+    /// About the mean brightness of the image: f*/p of connections that are always looked at.
+    least: f64,
     /// Fewest bidirectional samples of a round.
     least_samples: u32,
     /// Bidirectional samples that found no light, if the search for it was given up.
@@ -90,7 +99,9 @@ impl<'a> PlainChains<'a> {
         let (mutations, usual) = mutations(&cx.settings.metropolis.weights);
         let choice = cx.settings.metropolis.choice;
         let table = if choice == Choice::Fixed { usual.clone() } else { usual.equal() };
-        let mut chains = Self { cx, space, mutations, table, least_samples: LEAST_SAMPLES, dark_after: None };
+        let (takes, least_samples) = (Vec::new(), LEAST_SAMPLES);
+        let mut chains =
+            Self { cx, space, mutations, table, takes, least: 0.0, least_samples, dark_after: None };
         chains.look_for_light();
         if choice == Choice::Learned {
             let count = (space.window.pixels() as u64).clamp(1 << 17, 1 << 21);
@@ -102,40 +113,45 @@ impl<'a> PlainChains<'a> {
         chains
     }
 
-    /// Finds how many bidirectional samples it takes to find a few paths that carry light. It depends on world, settings and
+    /// Finds how many bidirectional samples it takes to find a few paths that carry light, and about how much. It depends on world, settings and
     /// seed alone, so that rounds stay unbiased.
     fn look_for_light(&mut self) {
-        let found = |samples| self.bootstrap(LEARNING_ROUND, samples).candidates().len();
-        let (mut samples, mut last) = (LEAST_SAMPLES, 0);
-        while samples < MOST_SAMPLES {
-            last = found(samples);
-            if last >= FEW_CANDIDATES {
-                break;
-            }
+        let found = |samples| {
+            let candidates = self.bootstrap(LEARNING_ROUND, samples).candidates();
+            Pool::of(candidates.iter().map(|c| c.weight))
+        };
+        let mut samples = LEAST_SAMPLES;
+        let mut pool = found(samples);
+        while pool.size < FEW_CANDIDATES && samples < MOST_SAMPLES {
             samples *= 4;
+            pool = found(samples);
         }
-        let dark = last == 0 && found(samples) == 0 && !self.cx.cancelled();
+        let dark = pool.size == 0 && !self.cx.cancelled();
         (self.least_samples, self.dark_after) = (samples, dark.then_some(samples));
+        // Without what may be fireflies.
+        self.least = (pool.total - pool.heaviest) / f64::from(samples);
     }
 
     /// A usual run of chains as long as the settings say.
     pub fn run(&self, round: u32, mutations: u64) -> Run<'static> {
         let length = self.cx.settings.metropolis.chain_length;
-        Run { round, mutations, length, relative_to: None, learning: false }
+        let mutations_per_sample = MUTATIONS_PER_SAMPLE;
+        Run { round, mutations, mutations_per_sample, length, relative_to: None, learning: false }
     }
 
-    fn bootstrap(&self, round: u32, samples: u32) -> Bootstrap<'a> {
-        Bootstrap { space: self.space, seed: self.cx.settings.seed, round, samples }
+    fn bootstrap(&self, round: u32, samples: u32) -> Bootstrap<'_> {
+        let usual = Bootstrap::new(self.space, (self.cx.settings.seed, round), samples);
+        Bootstrap { takes: &self.takes, least: self.least, ..usual }
     }
 
     /// One round. `record` takes what the chain began from, a path, its aim, and how much of the window's mean brightness its
     /// steps stand for.
     pub fn render(&self, run: &Run<'_>, record: impl Fn(&Candidate, &Path, &Aim, f64) + Sync) -> Totals {
-        let Run { round, mutations, length, relative_to, learning } = *run;
+        let Run { round, mutations, mutations_per_sample, length, relative_to, learning } = *run;
         let relative = relative_to.map(|brightness| Relative { space: self.space, brightness });
         let target: &dyn Target = relative.as_ref().map_or(&Plain, |relative| relative);
         let count = mutations.div_ceil(length.into()).max(1) as usize;
-        let samples = (mutations / MUTATIONS_PER_SAMPLE).max(self.least_samples.into()) as u32;
+        let samples = (mutations / mutations_per_sample).max(self.least_samples.into()) as u32;
         let bootstrap = self.bootstrap(round, samples);
         let mut candidates = bootstrap.candidates();
         for candidate in &mut candidates {
@@ -154,6 +170,7 @@ impl<'a> PlainChains<'a> {
         let start = |index: usize| &candidates[seeds[index] as usize];
         let totals = Chains { cx: self.cx, kernel, round, length, learning }.run(
             count,
+            || bootstrap.tracer(),
             |index, tracer, path| bootstrap.replay(start(index), tracer, path),
             |index, path, aim, steps| record(start(index), path, aim, steps * step),
         );

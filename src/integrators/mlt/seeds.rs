@@ -7,6 +7,7 @@ use ajar_render::{
     math::scalar,
     rng::{Purpose, Rng},
 };
+use glam::DVec2;
 use rayon::prelude::*;
 
 use super::path::{Node, Path, Space};
@@ -17,6 +18,8 @@ use crate::bdpt::{Found, Tracer, Wanted};
 pub struct Candidate {
     /// Number of the sample.
     pub sample: u32,
+    /// Which of its takes.
+    take: u16,
     /// Technique.
     technique: [u8; 2],
     /// Place in the order in which seeds are spread.
@@ -45,15 +48,25 @@ pub struct Bootstrap<'w> {
     pub round: u32,
     /// Number of samples.
     pub samples: u32,
+    /// Takes of the samples that fall into each pixel of the window: pairs of an eye and a light path, whose mean counts. One
+    /// everywhere if empty.
+    pub takes: &'w [u32],
+    /// f*/p of a connection from which on it is looked at whatever it is; the less a dimmer one has, the seldomer.
+    pub least: f64,
 }
 
 /// Samples that a thread takes at a time.
 const BLOCK: u32 = 64;
 
 impl<'w> Bootstrap<'w> {
+    /// Samples of one take each, all of whose connections are looked at.
+    pub fn new(space: Space<'w>, (seed, round): (u64, u32), samples: u32) -> Self {
+        Self { space, seed, round, samples, takes: &[], least: 0.0 }
+    }
+
     /// What runs its samples.
     pub fn tracer(&self) -> Tracer<'w> {
-        Tracer::new(self.space.world, self.space.max_depth, 1.0 / self.space.film_ratio)
+        Tracer::new(self.space.world, self.space.max_depth, 1.0 / self.space.film_ratio).at_least(self.least)
     }
 
     /// All candidates, in the order of the samples.
@@ -91,9 +104,13 @@ impl<'w> Bootstrap<'w> {
                     return kept;
                 }
                 for i in block * BLOCK..((block + 1) * BLOCK).min(self.samples) {
-                    self.visit(tracer, i, |found| {
-                        kept.extend(self.candidate(i, found).and_then(|c| keep(memory, c, found)));
-                    });
+                    let takes = self.takes(self.place(i));
+                    for take in 0..takes as u16 {
+                        self.visit(tracer, (i, take), |found| {
+                            let candidate = self.candidate((i, take), found, 1.0 / f64::from(takes));
+                            kept.extend(candidate.and_then(|c| keep(memory, c, found)));
+                        });
+                    }
                 }
                 kept
             })
@@ -109,15 +126,33 @@ impl<'w> Bootstrap<'w> {
         path.measure(&self.space, (0, path.edges()), found.s.checked_sub(1)).ok()
     }
 
-    /// Runs sample `index`; paths of a single edge are not for chains.
-    fn visit(&self, tracer: &mut Tracer<'_>, index: u32, mut visit: impl FnMut(&Found<'_>)) {
-        let mut rng = Rng::new(self.seed, Purpose::Bootstrap, self.round, index.into());
-        // Hammersley's points, shifted: rows evenly spread, columns by van der Corput's sequence.
-        let shift = Rng::new(self.seed, Purpose::Bootstrap, self.round, u64::MAX).next_u32();
+    fn rng(&self, index: u64) -> Rng {
+        Rng::new(self.seed, Purpose::Bootstrap, self.round, index)
+    }
+
+    /// Raster position of sample `index`, in pixels: Hammersley's points, shifted. Rows are evenly spread, columns follow van
+    /// der Corput's sequence.
+    fn place(&self, index: u32) -> DVec2 {
+        let mut rng = self.rng(index.into());
+        let shift = self.rng(u64::MAX).next_u32();
         let column = f64::from(index.reverse_bits() ^ shift) * (1.0 / 4_294_967_296.0);
         let row = (f64::from(index) + rng.f64()) / f64::from(self.samples);
         let column = (column + rng.f64() / f64::from(self.samples)).fract();
-        let raster = self.space.raster([column, row]);
+        self.space.raster([column, row])
+    }
+
+    /// Takes of a sample at `raster`.
+    fn takes(&self, raster: DVec2) -> u32 {
+        self.space.pixel(raster).and_then(|pixel| self.takes.get(pixel)).map_or(1, |takes| *takes)
+    }
+
+    /// Runs a take of sample `index`; paths of a single edge are not for chains.
+    fn visit(&self, tracer: &mut Tracer<'_>, (index, take): (u32, u16), mut visit: impl FnMut(&Found<'_>)) {
+        let mut rng = self.rng(u64::from(index) | (u64::from(take) + 1) << 32);
+        let mut raster = self.place(index);
+        if self.takes(raster) > 1 {
+            raster = raster.floor() + DVec2::from(rng.pair());
+        }
         let lens = rng.pair();
         tracer.sample(raster, lens, &mut rng, |found| {
             if found.s + found.t > 2 {
@@ -126,12 +161,13 @@ impl<'w> Bootstrap<'w> {
         });
     }
 
-    fn candidate(&self, sample: u32, found: &Found<'_>) -> Option<Candidate> {
+    fn candidate(&self, (sample, take): (u32, u16), found: &Found<'_>, share: f64) -> Option<Candidate> {
         let ratio = if found.t == 1 { self.space.film_ratio } else { 1.0 };
-        let weight = scalar(found.contribution.weighted()) * ratio;
+        let weight = scalar(found.contribution.weighted()) * ratio * share;
         let pixel = self.space.pixel(found.raster)? as u32;
         (weight > 0.0 && weight.is_finite()).then(|| Candidate {
             sample,
+            take,
             pixel,
             technique: [found.s as u8, found.t as u8],
             order: (found.s + found.t) as u64 >> 1 << 32 | u64::from(morton(found.raster)),
@@ -143,7 +179,7 @@ impl<'w> Bootstrap<'w> {
     pub fn replay(&self, candidate: &Candidate, tracer: &mut Tracer<'_>, path: &mut Path) -> Option<()> {
         let [s, t] = candidate.technique.map(usize::from);
         let mut built = None;
-        self.visit(tracer, candidate.sample, |found| {
+        self.visit(tracer, (candidate.sample, candidate.take), |found| {
             if (found.s, found.t) == (s, t) {
                 built = self.build(path, found);
             }
@@ -153,7 +189,7 @@ impl<'w> Bootstrap<'w> {
 }
 
 /// Raster positions along a curve that keeps neighbours together (Morton 1966).
-fn morton(raster: glam::DVec2) -> u32 {
+fn morton(raster: DVec2) -> u32 {
     let spread = |x: u32| {
         let x = (x | x << 8) & 0x00FF_00FF;
         let x = (x | x << 4) & 0x0F0F_0F0F;
@@ -205,7 +241,7 @@ impl Pool {
 /// Draws `count` seeds in proportion to their weights, at even steps through all candidates, sorted by length and place
 /// so that the seeds spread over both. Sorts `candidates`; returns indices into them.
 pub fn resample(candidates: &mut [Candidate], count: usize, rng: &mut Rng) -> Vec<u32> {
-    candidates.sort_by_key(|c| (c.order, c.sample, c.technique));
+    candidates.sort_by_key(|c| (c.order, c.sample, c.take, c.technique));
     let total: f64 = candidates.iter().map(|c| c.weight).sum();
     let step = total / count as f64;
     let mut next = rng.f64() * step;

@@ -34,7 +34,7 @@ fn bidirectional_densities_are_true() {
     let scene = &SCENES[0];
     let world = (scene.world)();
     let (space, paths) = seeds(&world, scene.depth, 64);
-    let bootstrap = Bootstrap { space, seed: 5, round: 0, samples: 100_000 };
+    let bootstrap = Bootstrap::new(space, (5, 0), 100_000);
     let mut by_length = [0.0; 16];
     for candidate in bootstrap.candidates() {
         by_length[candidate.edges()] += candidate.weight / 100_000.0;

@@ -56,13 +56,13 @@ fn batch(world: &World, batch: u64) -> Sums {
                 continue;
             }
             let (x0, density) = world.lights.sample(rng.f64(), rng.pair()).unwrap();
-            sums.add(1, t, connector.next_event(&x0, density, &eye, t));
+            sums.add(1, t, connector.next_event((&x0, density), (&eye, t), &mut rng));
             for s in 2..=light.len().min(MAX_EDGES + 1 - t) {
-                sums.add(s, t, connector.connect(&light, s, &eye, t));
+                sums.add(s, t, connector.connect((&light, s), (&eye, t), &mut rng));
             }
         }
         for s in 2..=light.len() {
-            if let Some(splat) = connector.splat(&light, s, rng.pair()) {
+            if let Some(splat) = connector.splat((&light, s), &mut rng) {
                 sums.add(s, 1, splat.found);
             }
         }

@@ -119,7 +119,7 @@ pub fn settings(world: &World, seed: u64, max_depth: usize, samples_per_round: u
 pub fn seeds(world: &World, depth: usize, count: usize) -> (Space<'_>, Vec<Path>) {
     let settings = settings(world, 11, depth, 1);
     let space = Space::new(world, settings.window, depth);
-    let bootstrap = Bootstrap { space, seed: 11, round: 0, samples: 4 * count as u32 };
+    let bootstrap = Bootstrap::new(space, (11, 0), 4 * count as u32);
     let mut candidates = bootstrap.candidates();
     let chosen = resample(&mut candidates, count, &mut Rng::new(11, Purpose::Test, 0, 0));
     let mut tracer = bootstrap.tracer();

@@ -28,7 +28,7 @@ impl<'w> Samples<'w> {
         target: &dyn Target,
         (round, count): (u32, usize),
     ) -> Self {
-        let bootstrap = Bootstrap { space, seed: settings.seed, round, samples: count as u32 };
+        let bootstrap = Bootstrap::new(space, (settings.seed, round), count as u32);
         let mut candidates = bootstrap.candidates();
         weigh(&bootstrap, &mut candidates, target);
         let seeds = resample(&mut candidates, count, &mut Rng::new(settings.seed, Purpose::Test, 0, 1));
