@@ -28,6 +28,8 @@ const LEAST_SAMPLES: u32 = 1 << 12;
 const MOST_SAMPLES: u32 = 1 << 20;
 /// Paths that a bootstrap should find.
 const FEW_CANDIDATES: u64 = 256;
+/// Contribution of a connection, relative to the mean of the image, below which it is not always looked at.
+const DIM: f64 = 0.25;
 /// Round number of the pilot that learns.
 const LEARNING_ROUND: u32 = u32::MAX - 3;
 
@@ -84,7 +86,7 @@ pub struct PlainChains<'a> {
     pub table: Table,
     /// Takes of the bidirectional samples at each pixel, as [`Bootstrap`] has them.
     takes: Vec<u32>,
-    /// About the mean brightness of the image: f*/p of connections that are always looked at.
+    /// f*/p from which on connections are always looked at.
     least: f64,
     /// Fewest bidirectional samples of a round.
     least_samples: u32,
@@ -129,7 +131,7 @@ impl<'a> PlainChains<'a> {
         let dark = pool.size == 0 && !self.cx.cancelled();
         (self.least_samples, self.dark_after) = (samples, dark.then_some(samples));
         // Without what may be fireflies.
-        self.least = (pool.total - pool.heaviest) / f64::from(samples);
+        self.least = DIM * (pool.total - pool.heaviest) / f64::from(samples);
     }
 
     /// A usual run of chains as long as the settings say.

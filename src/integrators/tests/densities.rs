@@ -90,9 +90,10 @@ fn what_the_eye_sees_lands_where_densities_say() {
 fn assert_lands(mutation: &dyn Mutation, kernel: Kernel, proposals: usize) {
     let scene = &SCENES[0];
     let world = (scene.world)();
-    let (space, paths) = seeds(&world, scene.depth, 64);
-    // From one diffuse surface to others, well inside the image.
-    let x = paths.iter().find(|x| x.edges() == 3 && (x.raster - DVec2::splat(16.0)).length() < 5.0).unwrap();
+    let (space, paths) = seeds(&world, scene.depth, 256);
+    // From one diffuse surface to others, well inside the image and near an edge of the box: several triangles are to be hit.
+    let x =
+        paths.iter().find(|x| x.edges() == 3 && (x.raster - DVec2::new(15.0, 20.0)).length() < 4.0).unwrap();
     let mut rng = Rng::new(6, Purpose::Test, 0, 0);
     let (mut y, mut landed, mut by_triangle) = (Proposal::default(), 0.0, BTreeMap::<_, f64>::new());
     y.follow(x);

@@ -30,7 +30,7 @@ fn assert_irradiance(name: &str, b: Builder, lux: f64) {
     let world = b.world(4);
     let expected = lux * ALBEDO / PI;
     for integrator in integrators() {
-        let blocks = render_blocks(&world, *integrator, &settings(&world, 1, 3, 256), 32);
+        let blocks = render_blocks(&world, *integrator, &settings(&world, 1, 3, 256), 48);
         // Of the whole image, which is smaller than a block.
         let (mean, variance) = blocks.estimate(0);
         let error = variance.powf(0.5) * 4.0 + expected * 1e-3;
