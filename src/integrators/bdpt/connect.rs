@@ -39,7 +39,7 @@ pub struct Connector<'w> {
     /// Which paths are wanted, all if nothing is said. Asked before looking whether something is in the way, which is most
     /// of the work.
     pub(super) wanted: Option<Wanted<'w>>,
-    /// f*/p of a technique below which Russian roulette decides whether to look at all; 0 for never.
+    /// Weighted f*/p of a technique below which Russian roulette decides whether to look at all; 0 for never.
     pub(super) least: f64,
     /// Raster position of the eye subpath, pixels.
     pub(super) raster: DVec2,
@@ -129,7 +129,7 @@ impl<'w> Connector<'w> {
         let emitted = self.world.emitted(x0, edge.to_eye) * (self.world.coverage(x0) / density);
         let at_eye = end.vertex.evaluate(-edge.to_eye, end.to_previous);
         let value = emitted * end.throughput * at_eye.value * geometry(x0, &end.vertex, &edge);
-        let value = self.visible_unless_filtered(self.roulette(value, rng), x0, &end.vertex, &edge);
+        let value = self.visible_unless_later(value, x0, &end.vertex, &edge);
         if value == Rgb::ZERO {
             return Contribution::NONE;
         }
@@ -138,7 +138,7 @@ impl<'w> Connector<'w> {
         self.to_eye[0] = self.emission_density(x0, &end.vertex, &edge);
         self.join_eye(eye, &end, &at_eye, x0, &edge, (1, t));
         let found = self.weigh(value, x0, (1, t), inner(&[], &eye.stops[1..t]));
-        self.visible_if_wanted(found, self.raster, x0, &end.vertex, &edge)
+        self.visible_if_wanted(&found, self.raster, (x0, &end.vertex, &edge), rng)
     }
 
     /// Technique s ≥ 2, t ≥ 2.
@@ -161,7 +161,7 @@ impl<'w> Connector<'w> {
         let at_eye = e.vertex.evaluate(-edge.to_eye, e.to_previous);
         let scattered = l.throughput * at_light.value * at_eye.value * e.throughput;
         let value = scattered * geometry(&l.vertex, &e.vertex, &edge);
-        let value = self.visible_unless_filtered(self.roulette(value, rng), &l.vertex, &e.vertex, &edge);
+        let value = self.visible_unless_later(value, &l.vertex, &e.vertex, &edge);
         if value == Rgb::ZERO {
             return Contribution::NONE;
         }
@@ -171,7 +171,7 @@ impl<'w> Connector<'w> {
         self.join_eye(eye, &e, &at_eye, &l.vertex, &edge, (s, t));
         let between = inner(&light.stops[1..s], &eye.stops[1..t]);
         let found = self.weigh(value, &light.stops[0].vertex, (s, t), between);
-        self.visible_if_wanted(found, self.raster, &l.vertex, &e.vertex, &edge)
+        self.visible_if_wanted(&found, self.raster, (&l.vertex, &e.vertex, &edge), rng)
     }
 
     /// Technique t = 1: the light subpath's `s`-th vertex, s ≥ 2, seen through a point of the lens.
@@ -184,7 +184,7 @@ impl<'w> Connector<'w> {
         let scattering = end.vertex.evaluate(end.to_previous, seen.direction);
         let value =
             end.throughput * scattering.value * (end.vertex.projected(seen.direction) * seen.importance);
-        let value = self.visible_unless_filtered(self.roulette(value, rng), &end.vertex, &lens, &edge);
+        let value = self.visible_unless_later(value, &end.vertex, &lens, &edge);
         if value == Rgb::ZERO {
             return None;
         }
@@ -194,43 +194,46 @@ impl<'w> Connector<'w> {
         self.to_light[k] = seen.importance * end.vertex.projected(seen.direction);
         self.join_light(light, &end, &scattering, &lens, &edge, (s, 1));
         let found = self.weigh(value, &light.stops[0].vertex, (s, 1), inner(&light.stops[1..s], &[]));
-        let found = self.visible_if_wanted(found, seen.raster, &end.vertex, &lens, &edge);
+        let found = self.visible_if_wanted(&found, seen.raster, (&end.vertex, &lens, &edge), rng);
         Some(Splat { raster: seen.raster, point, lens, found })
     }
 
-    /// Saves most of what is too dim to be worth a ray that work, and weighs the rest accordingly.
-    fn roulette(&self, value: Rgb, rng: &mut Rng) -> Rgb {
-        let chance = scalar(value) / self.least;
-        if chance < 1.0 { if rng.f64() < chance { value / chance } else { Rgb::ZERO } } else { value }
+    /// `value` times what of it crosses the edge, unless that is looked for later; no ray is cast for nothing.
+    fn visible_unless_later(&self, value: Rgb, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
+        if value == Rgb::ZERO || self.looks_later() {
+            value
+        } else {
+            value * self.world.transmittance(light, eye, edge)
+        }
     }
 
-    /// `value` times what of it crosses the edge, unless that is looked for later; no ray is cast for nothing.
-    fn visible_unless_filtered(&self, value: Rgb, light: &Vertex, eye: &Vertex, edge: &Edge) -> Rgb {
-        let later = value == Rgb::ZERO || self.wanted.is_some();
-        if later { value } else { value * self.world.transmittance(light, eye, edge) }
+    /// Whether paths have to be weighed before it is known which of them are worth a ray.
+    fn looks_later(&self) -> bool {
+        self.wanted.is_some() || self.least > 0.0
     }
 
     fn is_wanted(&self, found: &Weighed, raster: DVec2) -> bool {
         self.wanted.is_none_or(|wanted| wanted(raster, found.alone))
     }
 
-    /// What of `found` crosses the edge, if it is wanted and nobody has looked yet.
+    /// What of `found` crosses the edge from the light's side to the eye's, if it is wanted, Russian roulette spares it, and
+    /// nobody has looked yet.
     fn visible_if_wanted(
         &self,
-        found: Weighed,
+        found: &Weighed,
         raster: DVec2,
-        light: &Vertex,
-        eye: &Vertex,
-        edge: &Edge,
+        (light, eye, edge): (&Vertex, &Vertex, &Edge),
+        rng: &mut Rng,
     ) -> Contribution {
-        let Contribution { value, weight } = found.contribution;
-        if self.wanted.is_none() {
+        if !self.looks_later() {
             return found.contribution;
         }
-        if !self.is_wanted(&found, raster) {
+        let chance = if found.worth < self.least { found.worth / self.least } else { 1.0 };
+        if !self.is_wanted(found, raster) || chance < 1.0 && rng.f64() >= chance {
             return Contribution::NONE;
         }
-        Contribution { value: value * self.world.transmittance(light, eye, edge), weight }
+        let Contribution { value, weight } = found.contribution;
+        Contribution { value: value * self.world.transmittance(light, eye, edge) / chance, weight }
     }
 
     fn emission_density(&self, x0: &Vertex, x1: &Vertex, edge: &Edge) -> f64 {
@@ -325,20 +328,25 @@ impl<'w> Connector<'w> {
                 by_eye += if k > s + ROULETTE_DEPTH { ratio * fewer } else { ratio };
             }
         });
+        let mut worth = scalar(value) / all;
         if t == 1 {
             by_eye *= self.light_fraction;
+            worth /= self.light_fraction;
         }
         Weighed {
             contribution: Contribution { value, weight: 1.0 / all },
+            worth,
             alone: scalar(value) / (by_eye * covered),
         }
     }
 }
 
-/// What a technique found, and what path tracing alone would make of it, where a filter asks.
+/// What a technique found, what that is worth, and what path tracing alone would make of it, where a filter asks.
 struct Weighed {
     contribution: Contribution,
-    /// f*/p; infinite where path tracing never finds the path.
+    /// Weighted f*/p for an eye path of its own for each light path.
+    worth: f64,
+    /// f*/p of path tracing; infinite where it never finds the path.
     alone: f64,
 }
 

@@ -106,8 +106,8 @@ impl<'w> Tracer<'w> {
         self
     }
 
-    /// Plays Russian roulette with connections whose f*/p is less than `least`, before it casts rays for them.
-    pub fn at_least(mut self, least: f64) -> Self {
+    /// Plays Russian roulette with connections whose weighted f*/p is less than `least`, before it casts rays for them.
+    pub fn with_roulette_below(mut self, least: f64) -> Self {
         self.connector.least = least;
         self
     }

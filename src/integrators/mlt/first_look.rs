@@ -100,19 +100,21 @@ const MOST_EFFORT: f64 = 12.0;
 const MOST_ADDED: f64 = 0.5;
 
 /// How many times as many samples as usual each pixel gets, given the share of them that mirrors and glass send on.
-pub fn spread(sent_on: &[f64]) -> Vec<u32> {
+pub fn efforts_for(sent_on: &[f64]) -> Vec<u32> {
     let mean = sent_on.iter().sum::<f64>() / sent_on.len() as f64;
     let added = (MOST_EFFORT - 1.0).min(MOST_ADDED / mean);
-    sent_on.iter().map(|share| 1 + (added * share).round() as u32).collect()
+    sent_on.iter().map(|share| 1 + (added * share) as u32).collect()
 }
 
 /// The same, found by a look of its own.
 pub fn efforts(space: &Space<'_>, settings: &Settings) -> Vec<u32> {
-    let glances = glances(space, settings, 0).into_iter();
+    // Lens, first surface and next.
+    let short = space.with_depth(space.max_depth.min(3));
+    let glances = glances(&short, settings, 0).into_iter();
     let found: Vec<Values> = glances
         .map(|glance| glance.map_or(Values::ZERO, |seen| Values::new(seen.sent_on, 0.0, 0.0, 1.0)))
         .collect();
-    let reach = step(found.len()) / 2;
+    let reach = step(found.len()) - 1;
     let sent_on = smooth(&found, space.window.width() as usize, reach);
-    spread(&sent_on.iter().map(|seen| seen.x).collect::<Vec<_>>())
+    efforts_for(&sent_on.iter().map(|seen| seen.x).collect::<Vec<_>>())
 }

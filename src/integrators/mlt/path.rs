@@ -43,6 +43,11 @@ impl<'w> Space<'w> {
         Self { world, window, max_depth, film_ratio, cancel: &NEVER }
     }
 
+    /// The paths among them of at most `max_depth` edges.
+    pub fn with_depth(&self, max_depth: usize) -> Self {
+        Self { max_depth, ..*self }
+    }
+
     /// Those that a render asks for.
     pub fn of(cx: &Context<'w>) -> Self {
         Self { cancel: cx.cancel, ..Self::new(cx.world, cx.settings.window, cx.settings.max_depth) }

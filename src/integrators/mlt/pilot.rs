@@ -40,8 +40,8 @@ const BRIGHTNESS: Mutations = Mutations { a_pixel: 16, fewest: 1 << 16, most: 1 
 const GAIN: Mutations = Mutations { a_pixel: 8, fewest: 1 << 15, most: 1 << 19 };
 /// How much smaller the error of paths alone must be for the first look to decide: it is right within a third.
 const CLEARLY: f64 = 0.7;
-/// Mutations for each bidirectional sample that looks for seeds. They are fewer than where chains make the image: what one of
-/// them makes too bright lies in one part and in few squares.
+/// Mutations for each bidirectional sample that looks for seeds. Such samples are fewer than where chains make the image: what
+/// one of them makes too bright lies in one part and in few squares.
 const MUTATIONS_PER_SAMPLE: u64 = 64;
 /// Steps of each chain: they begin where bidirectional samples say, and need not go far from there.
 const LENGTH: u32 = 128;
@@ -108,7 +108,7 @@ pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
     let Gain { clamp, residual, .. } = gain;
     Some(Plan {
         brightness,
-        effort: first_look::spread(&sent_on),
+        effort: first_look::efforts_for(&sent_on),
         clamp,
         mutations_per_sample,
         beside,
@@ -139,7 +139,7 @@ fn seen_by_chains(chains: &PlainChains<'_>, before: Option<(&[f64], &Surfaces)>,
     };
     let number = if before.is_some() { BRIGHTNESS_ROUND } else { ROUGH_ROUND };
     let relative_to = before.map(|(brightness, _)| brightness);
-    chains.render(&Run { relative_to, ..run(chains, number, mutations) }, record);
+    chains.render(&Run { relative_to, ..short_run(chains, number, mutations) }, record);
     if space.cancelled() {
         return vec![1.0; pixels];
     }
@@ -159,7 +159,8 @@ fn seen_by_chains(chains: &PlainChains<'_>, before: Option<(&[f64], &Surfaces)>,
     parts.into_par_iter().map(|parts| parts.max(least).element_product().cbrt()).collect()
 }
 
-fn run(chains: &PlainChains<'_>, round: u32, mutations: u64) -> Run<'static> {
+/// Many short chains from fewer seeds than a round has.
+fn short_run(chains: &PlainChains<'_>, round: u32, mutations: u64) -> Run<'static> {
     Run { length: LENGTH, mutations_per_sample: MUTATIONS_PER_SAMPLE, ..chains.run(round, mutations) }
 }
 
@@ -248,7 +249,7 @@ fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Op
     // Sums are made per pixel and then in order: the order of threads must not show.
     let film = || Film::new(space.window.pixels(), 1.0);
     let [paths, bases, residuals] = [(); 3].map(|()| film().round());
-    let totals = chains.render(&run(chains, GAIN_ROUND, mutations), |_, path, aim, share| {
+    let totals = chains.render(&short_run(chains, GAIN_ROUND, mutations), |_, path, aim, share| {
         let Some(pixel) = space.pixel(path.raster) else { return };
         let brightness = brightness[pixel];
         let c = base::contribution(path);

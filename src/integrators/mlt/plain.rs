@@ -28,7 +28,8 @@ const LEAST_SAMPLES: u32 = 1 << 12;
 const MOST_SAMPLES: u32 = 1 << 20;
 /// Paths that a bootstrap should find.
 const FEW_CANDIDATES: u64 = 256;
-/// Contribution of a connection, relative to the mean of the image, below which it is not always looked at.
+/// Weight of a candidate, relative to the brightness of the image, below which it is not always looked at: a chain begins at
+/// one that weighs some twenty times the brightness.
 const DIM: f64 = 0.25;
 /// Round number of the pilot that learns.
 const LEARNING_ROUND: u32 = u32::MAX - 3;
@@ -53,6 +54,7 @@ impl Integrator for Mlt {
     fn prepare<'a>(&self, cx: Context<'a>) -> Box<dyn Rounds + 'a> {
         let mut chains = PlainChains::new(cx);
         chains.takes = first_look::efforts(&chains.space, cx.settings);
+        chains.least = DIM * chains.brightness;
         Box::new(MltRounds { chains, totals: Mutex::default() })
     }
 }
@@ -86,8 +88,10 @@ pub struct PlainChains<'a> {
     pub table: Table,
     /// Takes of the bidirectional samples at each pixel, as [`Bootstrap`] has them.
     takes: Vec<u32>,
-    /// f*/p from which on connections are always looked at.
+    /// Weight from which on candidates are always looked at.
     least: f64,
+    /// About the mean brightness of the image, without what may be fireflies; 0 if it is dark.
+    brightness: f64,
     /// Fewest bidirectional samples of a round.
     least_samples: u32,
     /// Bidirectional samples that found no light, if the search for it was given up.
@@ -102,8 +106,17 @@ impl<'a> PlainChains<'a> {
         let choice = cx.settings.metropolis.choice;
         let table = if choice == Choice::Fixed { usual.clone() } else { usual.equal() };
         let (takes, least_samples) = (Vec::new(), LEAST_SAMPLES);
-        let mut chains =
-            Self { cx, space, mutations, table, takes, least: 0.0, least_samples, dark_after: None };
+        let mut chains = Self {
+            cx,
+            space,
+            mutations,
+            table,
+            takes,
+            least: 0.0,
+            brightness: 0.0,
+            least_samples,
+            dark_after: None,
+        };
         chains.look_for_light();
         if choice == Choice::Learned {
             let count = (space.window.pixels() as u64).clamp(1 << 17, 1 << 21);
@@ -130,8 +143,7 @@ impl<'a> PlainChains<'a> {
         }
         let dark = pool.size == 0 && !self.cx.cancelled();
         (self.least_samples, self.dark_after) = (samples, dark.then_some(samples));
-        // Without what may be fireflies.
-        self.least = DIM * (pool.total - pool.heaviest) / f64::from(samples);
+        self.brightness = (pool.total - pool.heaviest) / f64::from(samples);
     }
 
     /// A usual run of chains as long as the settings say.

@@ -48,10 +48,11 @@ pub struct Bootstrap<'w> {
     pub round: u32,
     /// Number of samples.
     pub samples: u32,
-    /// Takes of the samples that fall into each pixel of the window: pairs of an eye and a light path, whose mean counts. One
-    /// everywhere if empty.
+    /// Takes of the samples that fall into each pixel of the window, 1 to 65 535: pairs of an eye and a light path, whose mean
+    /// counts. One everywhere if empty.
     pub takes: &'w [u32],
-    /// f*/p of a connection from which on it is looked at whatever it is; the less a dimmer one has, the seldomer.
+    /// Weight of a candidate that Russian roulette always spares; it looks before it is known whether anything is in the way. 0
+    /// spares all.
     pub least: f64,
 }
 
@@ -66,7 +67,8 @@ impl<'w> Bootstrap<'w> {
 
     /// What runs its samples.
     pub fn tracer(&self) -> Tracer<'w> {
-        Tracer::new(self.space.world, self.space.max_depth, 1.0 / self.space.film_ratio).at_least(self.least)
+        Tracer::new(self.space.world, self.space.max_depth, 1.0 / self.space.film_ratio)
+            .with_roulette_below(self.least)
     }
 
     /// All candidates, in the order of the samples.
@@ -241,7 +243,7 @@ impl Pool {
 /// Draws `count` seeds in proportion to their weights, at even steps through all candidates, sorted by length and place
 /// so that the seeds spread over both. Sorts `candidates`; returns indices into them.
 pub fn resample(candidates: &mut [Candidate], count: usize, rng: &mut Rng) -> Vec<u32> {
-    candidates.sort_by_key(|c| (c.order, c.sample, c.take, c.technique));
+    candidates.par_sort_unstable_by_key(|c| (c.order, c.sample, c.take, c.technique));
     let total: f64 = candidates.iter().map(|c| c.weight).sum();
     let step = total / count as f64;
     let mut next = rng.f64() * step;
