@@ -36,8 +36,8 @@ struct Group {
 }
 
 impl<'a> Chains<'a> {
-    /// Runs `count` chains. `find_seed` builds the first path of each, by a `tracer` for each group of chains; `record` takes the chain's index, paths, what they aim
-    /// at and the steps that they stand for.
+    /// Runs `count` chains. `find_seed` builds the first path of each, by a `tracer` for each group of chains; `record` takes
+    /// the chain's index, paths, what they aim at and the steps that they stand for.
     pub fn run<'t>(
         &self,
         count: usize,

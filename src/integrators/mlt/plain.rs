@@ -128,8 +128,8 @@ impl<'a> PlainChains<'a> {
         chains
     }
 
-    /// Finds how many bidirectional samples it takes to find a few paths that carry light, and about how much. It depends on world, settings and
-    /// seed alone, so that rounds stay unbiased.
+    /// Finds how many bidirectional samples it takes to find a few paths that carry light, and about how much. It depends on
+    /// world, settings and seed alone, so that rounds stay unbiased.
     fn look_for_light(&mut self) {
         let found = |samples| {
             let candidates = self.bootstrap(LEARNING_ROUND, samples).candidates();
