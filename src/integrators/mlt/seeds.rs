@@ -51,8 +51,7 @@ pub struct Bootstrap<'w> {
     /// Takes of the samples that fall into each pixel of the window, 1 to 65 535: pairs of an eye and a light path, whose mean
     /// counts. One everywhere if empty.
     pub takes: &'w [u32],
-    /// Weight of a candidate that Russian roulette always spares; it looks before it is known whether anything is in the way. 0
-    /// spares all.
+    /// Weight, should nothing be in the way, from which on Russian roulette spares a connection for certain; 0 spares all.
     pub least: f64,
 }
 
