@@ -7,6 +7,7 @@ pub mod choice;
 mod direct;
 mod estimator;
 mod first_look;
+mod gain;
 pub mod lens_subpaths;
 pub mod manifold;
 pub mod mutation;

@@ -10,9 +10,9 @@ use ajar_render::{
 use rayon::prelude::*;
 
 use super::{
-    base,
     first_look::{self, Glance},
-    path::{Path, Space},
+    gain::{Gain, gain_over},
+    path::Path,
     plain::{PlainChains, Run},
     seeds::Candidate,
     smooth::{Surfaces, Values, smooth},
@@ -38,8 +38,11 @@ const ROUGH: Mutations = Mutations { a_pixel: 2, fewest: 1 << 15, most: 1 << 17 
 const BRIGHTNESS: Mutations = Mutations { a_pixel: 16, fewest: 1 << 16, most: 1 << 22 };
 /// Those that find what chains would cost and gain.
 const GAIN: Mutations = Mutations { a_pixel: 8, fewest: 1 << 15, most: 1 << 19 };
-/// How much smaller the error of paths alone must be for the first look to decide: it is right within a third.
-const CLEARLY: f64 = 0.7;
+/// How many times smaller the error with chains must seem for them to be run: on easy scenes the estimate is up to twice too
+/// good (docs/metropolis.md has figures).
+const PAYS: f64 = 1.7;
+/// The same for the first look to go on.
+const MAY_PAY: f64 = 0.8 * PAYS;
 /// Mutations for each bidirectional sample that looks for seeds. Such samples are fewer than where chains make the image: what
 /// one of them makes too bright lies in one part and in few squares.
 const MUTATIONS_PER_SAMPLE: u64 = 64;
@@ -54,23 +57,7 @@ const BRIGHTNESS_ROUND: u32 = u32::MAX - 1;
 const GAIN_ROUND: u32 = u32::MAX - 2;
 const ROUGH_ROUND: u32 = u32::MAX - 4;
 /// Least brightness, relative to the mean.
-const FLOOR: f64 = 0.1;
-/// Steps that a chain needs to forget a pixel: measured between 4 in easy scenes and 47 behind a door.
-const CORRELATION: f64 = 15.0;
-/// Even spread makes an eye path worth about this many random ones where paths alone do well.
-const EVENNESS: f64 = 1.5;
-/// What κ may be: where chains render next to everything, more would leave fireflies in the base; where they render
-/// little, more spares them the work.
-const CLAMPS: [f64; 3] = [2.0, 4.0, 8.0];
-/// Bookkeeping of a mutation, in rays.
-const OVERHEAD: f64 = 1.5;
-/// Shares of the work that the base may get beside chains.
-const BASE_SHARE: [f64; 2] = [0.3, 0.7];
-
-/// What looks for seeds besides the base, relative to the work of base and chains.
-const SEED_WORK: f64 = 0.11;
-/// What a bidirectional sample that looks for heavy paths costs in eye paths.
-const BIDIRECTIONAL_COST: f64 = 3.0;
+pub const FLOOR: f64 = 0.1;
 
 /// What the pilot found.
 #[derive(Clone, Debug)]
@@ -93,16 +80,17 @@ pub struct Plan {
 pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
     let pays = |gain: &Gain, least| always || gain.advantage() > least;
     let pixels = chains.space.window.pixels();
+    let gain_run = |mutations: Mutations| short_run(chains, GAIN_ROUND, mutations.for_pixels(pixels));
     let rough = seen_by_chains(chains, None, ROUGH.for_pixels(pixels));
-    gain_over(chains, &rough, ROUGH.for_pixels(pixels)).filter(|gain| pays(gain, CLEARLY))?;
+    gain_over(chains, &rough, &gain_run(ROUGH)).filter(|gain| pays(gain, MAY_PAY))?;
     let surfaces = Surfaces::new(&chains.space);
     let mut brightness = seen_by_chains(chains, Some((&rough, &surfaces)), BRIGHTNESS.for_pixels(pixels));
     let (walked, sent_on) = seen_by_walks(chains, &surfaces);
     drop(surfaces);
     // Chains may have missed what walks find easily; a brightness that is too low costs more than one as much too high.
     brightness.iter_mut().zip(walked).for_each(|(chained, walked)| *chained = chained.max(walked));
-    let gain = gain_over(chains, &brightness, GAIN.for_pixels(pixels));
-    let gain = gain.filter(|gain| pays(gain, 1.0))?;
+    let gain = gain_over(chains, &brightness, &gain_run(GAIN));
+    let gain = gain.filter(|gain| pays(gain, PAYS))?;
     let mutations_per_sample = gain.mutations_per_sample();
     let beside = gain.beside(mutations_per_sample);
     let Gain { clamp, residual, .. } = gain;
@@ -133,7 +121,7 @@ fn seen_by_chains(chains: &PlainChains<'_>, before: Option<(&[f64], &Surfaces)>,
     let record = |start: &Candidate, path: &Path, aim: &Aim, share: f64| {
         if let Some(pixel) = space.pixel(path.raster) {
             let mut parts = Rgb::ZERO;
-            parts[part(start.sample)] = scalar(aim.deposit) * (share * (PARTS * pixels) as f64);
+            parts[part(start.sample, PARTS)] = scalar(aim.deposit) * (share * (PARTS * pixels) as f64);
             round.add(pixel, parts);
         }
     };
@@ -164,10 +152,10 @@ fn short_run(chains: &PlainChains<'_>, round: u32, mutations: u64) -> Run<'stati
     Run { length: LENGTH, mutations_per_sample: MUTATIONS_PER_SAMPLE, ..chains.run(round, mutations) }
 }
 
-/// To which of the parts a bidirectional sample belongs, by Weyl's sequence: low bits of its number say at which columns of
+/// To which of so many parts a bidirectional sample belongs, by Weyl's sequence: low bits of its number say at which columns of
 /// the image it begins, high bits at which rows.
-fn part(sample: u32) -> usize {
-    ((u64::from(sample.wrapping_mul(0x9E37_79B9)) * PARTS as u64) >> 32) as usize
+pub fn part(sample: u32, parts: usize) -> usize {
+    ((u64::from(sample.wrapping_mul(0x9E37_79B9)) * parts as u64) >> 32) as usize
 }
 
 /// Brightness of each pixel as two sets of eye paths agree on it, for what only one of them found is a firefly; and the
@@ -186,118 +174,6 @@ fn seen_by_walks(chains: &PlainChains<'_>, surfaces: &Surfaces) -> (Vec<f64>, Ve
     surfaces.smooth(&found, reach.max(step)).into_iter().map(|seen| (seen.x.min(seen.y), seen.z)).unzip()
 }
 
-/// Relative second moments of one sample, averaged over pixels, what is left to chains, and costs in rays.
-#[derive(Clone, Copy, Debug, Default)]
-struct Gain {
-    /// κ of the base.
-    clamp: f64,
-    /// Second moments of path tracing alone, and of the base.
-    path: f64,
-    base: f64,
-    /// Mean of what is left to chains.
-    residual: f64,
-    path_cost: f64,
-    mutation_cost: f64,
-}
-
-impl Gain {
-    /// Bidirectional samples for each eye path that add [`SEED_WORK`] to the work.
-    fn beside(&self, mutations_per_sample: f64) -> f64 {
-        let work = self.path_cost + mutations_per_sample * self.mutation_cost;
-        SEED_WORK * work / (BIDIRECTIONAL_COST * self.path_cost)
-    }
-
-    /// Squared error of path tracing alone over that of base and chains, in equal time.
-    fn advantage(&self) -> f64 {
-        self.path * self.path_cost / (EVENNESS * self.error() * (1.0 + SEED_WORK))
-    }
-
-    /// Squared error of base and chains times the time that both take.
-    fn error(&self) -> f64 {
-        let ((base, chains), share) = (self.work(), self.share());
-        base / share + chains / (1.0 - share)
-    }
-
-    /// Share of the base in the time. Minimizes σ²_B/t_B + σ²_M/t_M: times in proportion to the standard deviations, within
-    /// bounds.
-    fn share(&self) -> f64 {
-        let (base, chains) = self.work();
-        let [least, most] = BASE_SHARE;
-        if base + chains > 0.0 {
-            (base.sqrt() / (base.sqrt() + chains.sqrt())).clamp(least, most)
-        } else {
-            most
-        }
-    }
-
-    /// Variances times costs of base and chains.
-    fn work(&self) -> (f64, f64) {
-        (self.base * self.path_cost, self.residual.powi(2) * CORRELATION * self.mutation_cost)
-    }
-
-    /// Mutations for each eye path.
-    fn mutations_per_sample(&self) -> f64 {
-        let share = self.share();
-        (1.0 - share) / share * self.path_cost / self.mutation_cost
-    }
-}
-
-/// Chains see paths in proportion to what they contribute: the mean of C/μ over them is the second moment of the path
-/// tracer, however seldom it would find them itself. Of the values that κ may have the one with the least error.
-fn gain_over(chains: &PlainChains<'_>, brightness: &[f64], mutations: u64) -> Option<Gain> {
-    let space = &chains.space;
-    // Sums are made per pixel and then in order: the order of threads must not show.
-    let film = || Film::new(space.window.pixels(), 1.0);
-    let [paths, bases, residuals] = [(); 3].map(|()| film().round());
-    let totals = chains.render(&short_run(chains, GAIN_ROUND, mutations), |_, path, aim, share| {
-        let Some(pixel) = space.pixel(path.raster) else { return };
-        let brightness = brightness[pixel];
-        let c = base::contribution(path);
-        // The channels of these films are the values of κ.
-        let left = CLAMPS.map(|clamp| base::share_of_chains(c, clamp * brightness));
-        let relative = scalar(aim.deposit) * share / brightness;
-        let moments = |of: [f64; 3]| Rgb::from(of.map(|x| x.min(MOST) * relative));
-        let of_base = |left: f64| if left < 1.0 { (1.0 - left).powi(2) * c / brightness } else { 0.0 };
-        paths.add(pixel, moments([c / brightness; 3]));
-        bases.add(pixel, moments(left.map(of_base)));
-        residuals.add(pixel, moments(left));
-    });
-    if totals.stats.steps() == 0 || space.cancelled() {
-        return None;
-    }
-    let mean = |round| {
-        let mut film = film();
-        film.merge(round, 1.0);
-        (0..film.pixels()).map(|pixel| film.mean(pixel)).sum::<Rgb>().to_array()
-    };
-    let (path_cost, mutation_cost) =
-        (path_cost(space, chains.cx.settings.seed), totals.rays_per_mutation() + OVERHEAD);
-    let [paths, bases, residuals] = [&paths, &bases, &residuals].map(mean);
-    let gains = (0..CLAMPS.len()).map(|i| Gain {
-        clamp: CLAMPS[i],
-        path: paths[i],
-        base: bases[i],
-        residual: residuals[i],
-        path_cost,
-        mutation_cost,
-    });
-    let best = gains.min_by(|a, b| a.error().total_cmp(&b.error()));
-    best.filter(|_| !space.cancelled())
-}
-
-/// Largest relative contribution that counts in the second moments.
-const MOST: f64 = 1e5;
-
-/// Rays of one eye path.
-fn path_cost(space: &Space<'_>, seed: u64) -> f64 {
-    const STRIDE: usize = 37;
-    let paths = space.window.pixels().div_ceil(STRIDE);
-    let vertices = |path| if space.cancelled() { 0 } else { base::vertices(space, seed, path * STRIDE) };
-    let vertices: usize = (0..paths).into_par_iter().map(vertices).sum();
-    // At each vertex one ray to a light and one that goes on.
-    2.0 * vertices as f64 / paths as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -309,7 +185,7 @@ mod tests {
         for sample in 0..SAMPLES {
             // As `Bootstrap` places them.
             let (column, row) = (sample.reverse_bits() >> 29, sample * 8 / SAMPLES);
-            counts[row as usize][column as usize][part(sample)] += 1;
+            counts[row as usize][column as usize][part(sample, PARTS)] += 1;
         }
         let usual = SAMPLES as usize / (64 * PARTS);
         let all = counts.as_flattened().as_flattened();
