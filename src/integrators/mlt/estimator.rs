@@ -169,6 +169,7 @@ impl Rounds for AjarRounds<'_> {
         let mut report = totals.report(self.mutations.iter().map(|m| m.name()));
         report.numbers.push(("clamp".into(), self.plan.clamp));
         report.numbers.push(("residual".into(), self.plan.residual));
+        report.numbers.push(("advantage".into(), self.plan.advantage));
         report.numbers.push(("mutations_per_sample".into(), self.plan.mutations_per_sample));
         report
     }

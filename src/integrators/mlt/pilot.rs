@@ -74,6 +74,8 @@ pub struct Plan {
     pub beside: f64,
     /// Share of the image that chains would render, in units of each pixel's brightness.
     pub residual: f64,
+    /// Squared error of path tracing alone over that of base and chains in equal time, as far as the pilot can tell.
+    pub advantage: f64,
 }
 
 /// Makes the plan; none where path tracing is better alone. `always` asks for chains wherever they find light.
@@ -101,6 +103,7 @@ pub fn plan(chains: &PlainChains<'_>, always: bool) -> Option<Plan> {
         mutations_per_sample,
         beside,
         residual,
+        advantage: gain.advantage(),
     })
 }
 
